@@ -1,0 +1,110 @@
+//! Sparse storage: 8³ bricks of voxels near the surface, one class for each brick elsewhere.
+
+use std::sync::Arc;
+
+use glam::IVec3;
+use rustc_hash::FxHashMap;
+
+/// Voxels along one side of a brick.
+pub const BRICK: i32 = 8;
+/// Voxels in a brick; voxel (x,y,z) of it has index `x + 8 y + 64 z`.
+pub const BRICK_VOXELS: usize = (BRICK * BRICK * BRICK) as usize;
+
+/// What is known of one brick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Slot {
+    /// Stored voxel by voxel, as number `n` of the active bricks.
+    Active(u32),
+    /// All its voxels lie inside the solid.
+    Inside,
+    /// All its voxels lie outside the solid.
+    Outside,
+}
+
+/// Which bricks are active, in a fixed order, and the class of the uniform ones beside them.
+/// Brick `b` holds the voxels `8 b .. 8 b + 8`. Bricks that were never inserted are outside.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Bricks {
+    active: Vec<IVec3>,
+    slots: FxHashMap<IVec3, Slot>,
+}
+
+/// Brick that holds `voxel`.
+#[inline]
+pub fn brick_of(voxel: IVec3) -> IVec3 {
+    IVec3::new(voxel.x >> 3, voxel.y >> 3, voxel.z >> 3)
+}
+
+/// Index of `voxel` within its brick.
+#[inline]
+pub fn index_in_brick(voxel: IVec3) -> usize {
+    ((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6) as usize
+}
+
+impl Bricks {
+    /// The given active bricks, sorted by (z, y, x) and without repetition, and no others.
+    pub fn new(active: impl IntoIterator<Item = IVec3>) -> Self {
+        let mut active: Vec<IVec3> = active.into_iter().collect();
+        active.sort_unstable_by_key(|b| (b.z, b.y, b.x));
+        active.dedup();
+        let slots = active.iter().enumerate().map(|(n, &b)| (b, Slot::Active(n as u32))).collect();
+        Self { active, slots }
+    }
+
+    /// Says that the inactive brick `brick` lies inside; no effect on an active one.
+    pub fn set_inside(&mut self, brick: IVec3) {
+        self.slots.entry(brick).or_insert(Slot::Inside);
+    }
+
+    /// What is known of brick `brick`.
+    #[inline]
+    pub fn slot(&self, brick: IVec3) -> Slot {
+        self.slots.get(&brick).copied().unwrap_or(Slot::Outside)
+    }
+
+    /// Coordinates of the active bricks, sorted by (z, y, x).
+    pub fn active(&self) -> &[IVec3] {
+        &self.active
+    }
+
+    /// Number of active bricks.
+    pub fn len(&self) -> usize {
+        self.active.len()
+    }
+
+    /// True without active bricks.
+    pub fn is_empty(&self) -> bool {
+        self.active.is_empty()
+    }
+}
+
+/// A value for each voxel of the active bricks, and one value each for inside and outside.
+#[derive(Debug, Clone)]
+pub struct Grid<T> {
+    /// Which voxels are stored.
+    pub bricks: Arc<Bricks>,
+    /// The values, brick by brick in the order of [`Bricks::active`].
+    pub values: Vec<[T; BRICK_VOXELS]>,
+    /// The value of voxels of bricks that lie inside.
+    pub inside: T,
+    /// The value of voxels of bricks that lie outside.
+    pub outside: T,
+}
+
+impl<T: Copy> Grid<T> {
+    /// All active voxels set to `value`.
+    pub fn filled(bricks: Arc<Bricks>, value: T, inside: T, outside: T) -> Self {
+        let values = vec![[value; BRICK_VOXELS]; bricks.len()];
+        Self { bricks, values, inside, outside }
+    }
+
+    /// The value of `voxel`, wherever it lies. One hash look-up: loops go brick by brick instead.
+    #[inline]
+    pub fn get(&self, voxel: IVec3) -> T {
+        match self.bricks.slot(brick_of(voxel)) {
+            Slot::Active(n) => self.values[n as usize][index_in_brick(voxel)],
+            Slot::Inside => self.inside,
+            Slot::Outside => self.outside,
+        }
+    }
+}

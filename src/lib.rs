@@ -1,0 +1,30 @@
+//! Repair of triangle meshes, and solid modelling on meshes as they really are: open, cracked,
+//! self-intersecting, flipped, doubled.
+//!
+//! The data's way, stage by stage, in the order of the modules below:
+//!
+//! ```text
+//! files ─► io ─► mesh (soup) ─► orient ─► ldi ─► spans ─► vote ─► sdf ─► contour ─► mesh ─► io ─► files
+//! ```
+//!
+//! What is promised: the mesh that a pipeline returns is closed, oriented, 2-manifold and free of
+//! degenerate and intersecting triangles, or the result says that it is not. The same input and
+//! options give the same bytes, whatever the number of threads.
+//!
+//! Conventions, everywhere: positions are `f64` in *model units* unless a name says `lattice`
+//! (voxel units, `h` = 1, origin at voxel (0,0,0)); signed distances are negative inside.
+#![warn(missing_docs)]
+#![forbid(unsafe_code)]
+
+pub mod cli;
+pub mod contour;
+pub mod io;
+pub mod lattice;
+pub mod ldi;
+pub mod mesh;
+pub mod orient;
+pub mod picture;
+pub mod pipeline;
+pub mod progress;
+pub mod sdf;
+pub mod vote;

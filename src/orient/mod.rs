@@ -1,0 +1,32 @@
+//! Cleaning and orientation of the soup.
+
+use serde::Serialize;
+
+/// What is done about the orientation of the input's triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum OrientMode {
+    /// Make each edge-connected patch consistent and decide its side by the LDIs.
+    #[default]
+    Auto,
+    /// Trust the file.
+    Keep,
+}
+
+/// What cleaning and orientation did.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct OrientReport {
+    /// Triangles without area or with a repeated vertex, dropped.
+    pub degenerate_dropped: usize,
+    /// Exact repetitions of another triangle, dropped.
+    pub duplicates_dropped: usize,
+    /// Triangles that were present in both orientations; one copy was kept.
+    pub both_sided: usize,
+    /// Edge-connected patches.
+    pub patches: usize,
+    /// Triangles turned over to agree with the rest of their patch.
+    pub flipped_in_patches: usize,
+    /// Patches turned over as a whole by the vote of the rays.
+    pub flipped_patches: usize,
+    /// Triangles in these patches.
+    pub flipped_by_rays: usize,
+}

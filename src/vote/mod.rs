@@ -1,0 +1,38 @@
+//! From spans to solid voxels: the 13 directions vote (Bærentzen §3.2).
+
+use serde::Serialize;
+
+/// How the votes of the directions make a voxel inside or outside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum VoteRule {
+    /// More than half of the valid votes; below five valid votes the half-rays decide.
+    #[default]
+    HalfRays,
+    /// More than half of the valid votes.
+    Majority,
+    /// Bærentzen's rule: more than half of all 13; an abstaining direction counts as outside.
+    Paper,
+}
+
+/// How sure the voxels near the surface are.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct VoteReport {
+    /// Voxels that were voted on (those of the active bricks).
+    pub voxels: usize,
+    /// Voxels with fewer than five valid votes, or whose minority holds over a quarter of them.
+    pub doubtful: usize,
+    /// Boxes around the largest groups of doubtful voxels, model units, largest group first.
+    pub doubtful_regions: Vec<DoubtfulRegion>,
+}
+
+/// A connected group of doubtful voxels.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DoubtfulRegion {
+    /// Smallest corner, model units.
+    pub min: [f64; 3],
+    /// Largest corner, model units.
+    pub max: [f64; 3],
+    /// Number of doubtful voxels.
+    pub voxels: usize,
+}
