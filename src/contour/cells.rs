@@ -128,9 +128,8 @@ impl Tables<'_> {
         for (deviation, &[a, b]) in deviations.iter_mut().zip(&shape.diagonals) {
             *deviation = trilinear(&corners, (places[a as usize] + places[b as usize]) * 0.5).abs();
         }
-        let score = |index: usize| -> f64 {
-            bits(shape.triangulations[index].diagonals.into()).map(|k| deviations[k]).sum()
-        };
+        let score =
+            |index: usize| -> f64 { bits(shape.triangulations[index].diagonals.into()).map(|k| deviations[k]).sum() };
         let mut order: Vec<(f64, usize)> = (0..shape.triangulations.len()).map(|i| (score(i), i)).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut best = (order[0].1, usize::MAX);

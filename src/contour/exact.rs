@@ -87,8 +87,7 @@ pub(super) fn triangles_meet(a: [u32; 3], b: [u32; 3], at: impl Fn(u32) -> DVec3
         2 => {
             let (i, j) = (3 - shared[0].0 - shared[1].0, 3 - shared[0].1 - shared[1].1);
             let (u, v) = (p[shared[0].0], p[shared[1].0]);
-            side(u, v, p[i], q[j]) == 0
-                && view(p).is_none_or(|axis| turn(u, v, p[i], axis) == turn(u, v, q[j], axis))
+            side(u, v, p[i], q[j]) == 0 && view(p).is_none_or(|axis| turn(u, v, p[i], axis) == turn(u, v, q[j], axis))
         }
         _ => true,
     }

@@ -28,8 +28,8 @@ pub const DIRECTIONS: [Direction; 13] = [
     direction(0, 0, 0),
     direction(1, 0, 0),
     direction(2, 0, 0),
-    direction(0, 1, 0),
-    direction(0, -1, 0),
+    direction(1, 0, 1),
+    direction(1, 0, -1),
     direction(1, 1, 0),
     direction(1, -1, 0),
     direction(2, 1, 0),
@@ -61,6 +61,17 @@ impl Direction {
         let mut p = DVec3::ZERO;
         p[a] = u + self.shear_u as f64 * depth;
         p[b] = v + self.shear_v as f64 * depth;
+        p[c] = depth;
+        p
+    }
+
+    /// The lattice point at sheared coordinates (u, v, depth).
+    #[inline]
+    pub fn unshear_voxel(&self, u: i32, v: i32, depth: i32) -> IVec3 {
+        let [a, b, c] = self.axes();
+        let mut p = IVec3::ZERO;
+        p[a] = u + self.shear_u * depth;
+        p[b] = v + self.shear_v * depth;
         p[c] = depth;
         p
     }
@@ -107,6 +118,7 @@ mod tests {
                 let s = d.shear(p);
                 assert!(s.x >= low[0] && s.x < low[0] + size[0] && s.y >= low[1] && s.y < low[1] + size[1]);
                 assert_eq!(d.unshear(s.x as f64, s.y as f64, s.z as f64), p.as_dvec3());
+                assert_eq!(d.unshear_voxel(s.x, s.y, s.z), p);
                 assert_eq!(d.shear(p + d.vector()), s + IVec3::Z);
             }
         }

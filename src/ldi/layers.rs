@@ -96,12 +96,19 @@ impl Layers {
         known.then(|| v as usize * self.size[0] as usize + u as usize)
     }
 
+    /// Indices (i, j) of ray number `ray`.
+    #[inline]
+    pub fn indices(&self, ray: usize) -> (i32, i32) {
+        let (i, j) = (ray % self.size[0] as usize, ray / self.size[0] as usize);
+        (i as i32 + self.low[0], j as i32 + self.low[1])
+    }
+
     /// u and v, in voxels, of ray number `ray`.
     #[inline]
     pub fn position(&self, ray: usize) -> (f64, f64) {
-        let (i, j) = (ray % self.size[0] as usize, ray / self.size[0] as usize);
+        let (i, j) = self.indices(ray);
         let f = self.factor as f64;
-        ((i as i32 + self.low[0]) as f64 / f, (j as i32 + self.low[1]) as f64 / f)
+        (i as f64 / f, j as f64 / f)
     }
 
     /// The crossings of ray number `ray`.

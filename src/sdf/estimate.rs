@@ -76,7 +76,7 @@ fn points(spans: &Spans, bricks: &Bricks) -> Vec<(u32, Point)> {
         let (u, v) = layers.position(ray);
         for hit in hits {
             let p = layers.direction.unshear(u, v, hit.depth);
-            let brick = brick_of(p.floor().as_ivec3());
+            let brick = brick_of(p.as_ivec3()); // no coordinate is negative
             if brick != last.0 {
                 last = (brick, bricks.slot(brick));
             }
@@ -114,7 +114,8 @@ fn estimate_brick(brick: IVec3, bins: &Bins, bricks: &Bricks, planes: &[Plane]) 
 /// Offers a point to the eight voxels of its cell, as far as they lie in the brick.
 #[inline]
 fn offer(at: Vec3, triangle: u32, nearest: &mut [(f32, u32); BRICK_VOXELS]) {
-    let cell = at.floor().as_ivec3();
+    // Shifted points lie at -8 or above.
+    let cell = (at + BRICK as f32).as_ivec3() - BRICK;
     if cell.min_element() < -1 {
         return;
     }

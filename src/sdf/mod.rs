@@ -14,8 +14,8 @@ pub use estimate::estimate;
 pub use march::march;
 pub use smooth::{FAR, smooth};
 
-use crate::ldi::Spans;
 use crate::lattice::Grid;
+use crate::ldi::Spans;
 use crate::mesh::Plane;
 use crate::vote::Votes;
 

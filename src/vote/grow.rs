@@ -64,16 +64,25 @@ fn bricks_with_crossings(spans: &[Spans]) -> Vec<IVec3> {
         .par_iter()
         .map(|spans| {
             let layers = &spans.layers;
+            let direction = layers.direction;
+            let factor = layers.factor as i32;
             let mut set = FxHashSet::default();
             let mut last = [IVec3::MIN; 3];
             for ray in 0..layers.ray_count() {
+                let hits = layers.of(ray);
+                if hits.is_empty() {
+                    continue;
+                }
+                let (i, j) = layers.indices(ray);
                 let (u, v) = layers.position(ray);
-                for hit in layers.of(ray) {
-                    let before = layers.direction.unshear(u, v, hit.depth.floor());
-                    let behind = layers.direction.unshear(u, v, hit.depth.floor() + 1.0);
-                    let itself = layers.direction.unshear(u, v, hit.depth);
+                for hit in hits {
+                    // Depths are not negative, so conversion rounds down.
+                    let t = hit.depth as i32;
+                    let before = direction.unshear_voxel(i.div_euclid(factor), j.div_euclid(factor), t);
+                    let behind = before + direction.vector();
+                    let itself = direction.unshear(u, v, hit.depth).as_ivec3();
                     for (last, p) in last.iter_mut().zip([before, behind, itself]) {
-                        let brick = brick_of(p.floor().as_ivec3());
+                        let brick = brick_of(p);
                         if *last != brick {
                             set.insert(brick);
                             *last = brick;

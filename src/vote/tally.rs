@@ -3,7 +3,7 @@
 use glam::IVec3;
 
 use super::VoteRule;
-use crate::lattice::{BRICK, BRICK_VOXELS};
+use crate::lattice::{BRICK, BRICK_VOXELS, Direction};
 use crate::ldi::{Expression, Hit, Operands, Spans};
 
 /// Below this many valid votes the half-rays decide ([`VoteRule::HalfRays`]), and a voxel is
@@ -47,49 +47,43 @@ pub struct Jury<'a> {
     pub rule: VoteRule,
 }
 
-/// Rays of a brick along u or v, at most: 8 voxels and a shear of 7.
-const WIDE: usize = (2 * BRICK - 1) as usize;
-/// In [`RayMasks`]: the ray has a say.
-const VALID: u16 = 1 << 8;
+/// Rays of a brick along u or v, at most: 8 voxels and a shear of 7; and one to make it even.
+const WIDE: usize = 2 * BRICK as usize;
+/// The lowest bit of each byte.
+const ONES: u64 = 0x0101_0101_0101_0101;
 
-/// For each ray through a brick: bit `t` is set where depth `t` within the brick is inside, and
-/// [`VALID`].
-type RayMasks = [[u16; WIDE]; WIDE];
+/// One byte a ray through a brick, in rows of rays that follow each other along x: bit `t` of
+/// `inside` is set where depth `t` within the brick is inside; `valid` is 1 where the ray speaks.
+struct RayMasks {
+    inside: [[u8; WIDE]; WIDE],
+    valid: [[u8; WIDE]; WIDE],
+}
+
+/// One byte a voxel of a brick, a row of eight along x in each number.
+struct Counts {
+    inside: [u64; 64],
+    valid: [u64; 64],
+}
 
 impl Jury<'_> {
     /// The votes on the voxels of brick `brick`.
     pub fn brick(&self, brick: IVec3) -> Box<[Votes; BRICK_VOXELS]> {
         let base = brick * BRICK;
-        let mut votes = Box::new([Votes::default(); BRICK_VOXELS]);
-        let mut masks: RayMasks = [[0; WIDE]; WIDE];
+        let mut masks = RayMasks { inside: [[0; WIDE]; WIDE], valid: [[0; WIDE]; WIDE] };
+        let mut counts = Counts { inside: [0; 64], valid: [0; 64] };
         for spans in self.spans {
-            self.read_rays(spans, base, &mut masks);
-            count(spans, &masks, &mut votes);
+            read_rays(spans, base, &mut masks);
+            count(spans.layers.direction, &masks, &mut counts);
         }
-        for (n, votes) in votes.iter_mut().enumerate() {
-            votes.is_inside = self.decide(*votes, base + voxel_in_brick(n));
-        }
-        votes
-    }
-
-    /// Fills the masks of the rays of one direction.
-    fn read_rays(&self, spans: &Spans, base: IVec3, masks: &mut RayMasks) {
-        let layers = &spans.layers;
-        let direction = layers.direction;
-        let first = first_ray(spans, base);
-        let (wide_u, wide_v) = (7 * direction.shear_u.unsigned_abs() + 8, 7 * direction.shear_v.unsigned_abs() + 8);
-        let depth = base[direction.main] as f64;
-        let factor = layers.factor as i32;
-        for j in 0..wide_v as usize {
-            for i in 0..wide_u as usize {
-                let ray = layers.ray((first[0] + i as i32) * factor, (first[1] + j as i32) * factor);
-                masks[j][i] = match ray {
-                    None => VALID,
-                    Some(ray) if spans.is_silent(ray) => 0,
-                    Some(ray) => VALID | depths_inside(layers.of(ray), depth),
-                };
+        let mut votes = Box::new([Votes::default(); BRICK_VOXELS]);
+        for (row, votes) in votes.chunks_exact_mut(8).enumerate() {
+            let (inside, valid) = (counts.inside[row].to_le_bytes(), counts.valid[row].to_le_bytes());
+            for (x, votes) in votes.iter_mut().enumerate() {
+                *votes = Votes { inside: inside[x], valid: valid[x], is_inside: false };
+                votes.is_inside = self.decide(*votes, base + voxel_in_brick(8 * row + x));
             }
         }
+        votes
     }
 
     fn decide(&self, votes: Votes, voxel: IVec3) -> bool {
@@ -136,43 +130,107 @@ pub fn voxel_in_brick(n: usize) -> IVec3 {
     IVec3::new((n & 7) as i32, (n >> 3 & 7) as i32, (n >> 6) as i32)
 }
 
-/// (u, v), in voxels, of the first ray that meets the brick at `base`.
-fn first_ray(spans: &Spans, base: IVec3) -> [i32; 2] {
-    let direction = spans.layers.direction;
+/// Fills the masks of the rays of one direction that meet the brick at `base`.
+fn read_rays(spans: &Spans, base: IVec3, masks: &mut RayMasks) {
+    let layers = &spans.layers;
+    let direction = layers.direction;
+    let factor = layers.factor as i32;
     let s = direction.shear(base);
-    [s.x - 7 * direction.shear_u.max(0), s.y - 7 * direction.shear_v.max(0)]
+    let first = [s.x - 7 * direction.shear_u.max(0), s.y - 7 * direction.shear_v.max(0)];
+    let wide = [7 * direction.shear_u.abs() + 8, 7 * direction.shear_v.abs() + 8];
+    let along_x = row_axis(direction);
+    for j in 0..wide[1] {
+        for i in 0..wide[0] {
+            let (inside, valid) = match layers.ray((first[0] + i) * factor, (first[1] + j) * factor) {
+                None => (0, 1),
+                Some(ray) if spans.is_silent(ray) => (0, 0),
+                Some(ray) => (depths_inside(layers.of(ray), s.z), 1),
+            };
+            let [row, place] = if along_x == 0 { [j, i] } else { [i, j] };
+            masks.inside[row as usize][place as usize] = inside;
+            masks.valid[row as usize][place as usize] = valid;
+        }
+    }
+}
+
+/// Which of u (0) and v (1) runs along x; for the direction along x itself it does not matter.
+fn row_axis(direction: Direction) -> usize {
+    if direction.main == 1 { 1 } else { 0 }
 }
 
 /// Bit `t` of the result: whether depth `base + t`, `t` < 8, lies between an entry and an exit.
 #[inline]
-fn depths_inside(hits: &[Hit], base: f64) -> u16 {
+fn depths_inside(hits: &[Hit], base: i32) -> u8 {
     let mut mask = 0u16;
     for span in hits.chunks_exact(2) {
-        // voxel at depth t is inside when entry < t <= exit
-        let from = (span[0].depth.floor() + 1.0 - base).clamp(0.0, 8.0) as u32;
-        let to = (span[1].depth.floor() + 1.0 - base).clamp(0.0, 8.0) as u32;
+        // The voxel at depth t is inside when entry < t <= exit. Depths are not negative.
+        let from = (span[0].depth as i32 + 1 - base).clamp(0, 8);
+        let to = (span[1].depth as i32 + 1 - base).clamp(0, 8);
         mask |= ((1 << to) - 1) & !((1u16 << from) - 1);
     }
-    mask
+    mask as u8
 }
 
-/// Adds one direction's votes to those of the brick's voxels.
-fn count(spans: &Spans, masks: &RayMasks, votes: &mut [Votes; BRICK_VOXELS]) {
-    let direction = spans.layers.direction;
-    let stride = [1usize, 8, 64];
-    let [a, b, c] = direction.axes();
-    let shift_u = 7 * direction.shear_u.max(0);
-    let shift_v = 7 * direction.shear_v.max(0);
-    for t in 0..BRICK {
-        let u0 = (shift_u - direction.shear_u * t) as usize;
-        for q in 0..BRICK {
-            let row = &masks[(shift_v - direction.shear_v * t + q) as usize][u0..u0 + 8];
-            let start = t as usize * stride[c] + q as usize * stride[b];
-            for (p, mask) in row.iter().enumerate() {
-                let votes = &mut votes[start + p * stride[a]];
-                votes.inside += (mask >> t & 1) as u8;
-                votes.valid += (mask >> 8) as u8;
-            }
+/// Adds one direction's votes to those of the brick's voxels, eight at a time.
+fn count(direction: Direction, masks: &RayMasks, counts: &mut Counts) {
+    if direction.main == 0 {
+        // Bit t of a mask belongs to byte t of a row; rows follow y, then z, as u and v do.
+        for (row, (inside, valid)) in counts.inside.iter_mut().zip(&mut counts.valid).enumerate() {
+            *inside += spread(masks.inside[row >> 3][row & 7]);
+            *valid += masks.valid[row >> 3][row & 7] as u64 * ONES;
         }
+        return;
+    }
+    // The shears along x and along the third axis, and the strides, in rows, of that axis and of
+    // the main one.
+    let (shear_x, shear_other) = match row_axis(direction) {
+        0 => (direction.shear_u, direction.shear_v),
+        _ => (direction.shear_v, direction.shear_u),
+    };
+    let (stride_other, stride_main) = if direction.main == 2 { (1, 8) } else { (8, 1) };
+    for t in 0..BRICK {
+        let from_x = (7 * shear_x.max(0) - shear_x * t) as usize;
+        for q in 0..BRICK {
+            let row = (7 * shear_other.max(0) - shear_other * t + q) as usize;
+            let at = (t * stride_main + q * stride_other) as usize;
+            counts.inside[at] += eight(&masks.inside[row], from_x) >> t & ONES;
+            counts.valid[at] += eight(&masks.valid[row], from_x);
+        }
+    }
+}
+
+/// Eight bytes of a row from `start`, the first lowest.
+#[inline]
+fn eight(row: &[u8; WIDE], start: usize) -> u64 {
+    let mut bytes = [0; 8];
+    bytes.copy_from_slice(&row[start..start + 8]);
+    u64::from_le_bytes(bytes)
+}
+
+/// Bit t of `mask` as byte t.
+#[inline]
+fn spread(mask: u8) -> u64 {
+    // Byte t keeps bit t alone; adding 127 carries it to the byte's highest bit.
+    let kept = mask as u64 * ONES & 0x8040_2010_0804_0201;
+    (kept + 0x7f7f_7f7f_7f7f_7f7f | kept) >> 7 & ONES
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spread_puts_bits_into_bytes() {
+        for mask in 0..=255u8 {
+            let expected: u64 = (0..8).map(|t| (mask as u64 >> t & 1) << (8 * t)).sum();
+            assert_eq!(spread(mask), expected, "{mask:08b}");
+        }
+    }
+
+    #[test]
+    fn a_voxel_on_the_entry_is_outside_and_one_on_the_exit_inside() {
+        let hits =
+            [Hit::new(9.0, 0, true), Hit::new(11.0, 1, false), Hit::new(14.5, 2, true), Hit::new(30.0, 3, false)];
+        assert_eq!(depths_inside(&hits, 8), 0b1000_1100);
     }
 }

@@ -38,9 +38,8 @@ impl Case {
         let lattice = Lattice { origin: DVec3::new(-0.37, 1.21, 0.083), h: 0.1, dims };
         let inside = |v: IVec3| v.cmpge(IVec3::ZERO).all() && v.cmplt(dims).all() && inside(v);
         let voxels = |low: IVec3, high: IVec3| {
-            (low.z..high.z).flat_map(move |z| {
-                (low.y..high.y).flat_map(move |y| (low.x..high.x).map(move |x| IVec3::new(x, y, z)))
-            })
+            (low.z..high.z)
+                .flat_map(move |z| (low.y..high.y).flat_map(move |y| (low.x..high.x).map(move |x| IVec3::new(x, y, z))))
         };
         let mut active = BTreeSet::new();
         for v in voxels(IVec3::splat(-1), dims) {
@@ -111,16 +110,16 @@ pub fn fault(mesh: &TriMesh) -> Option<String> {
     if let Some(p) = mesh.positions.iter().find(|p| p.as_vec3().as_dvec3() != **p) {
         return Some(format!("{p} is not f32"));
     }
-    (0..mesh.triangles.len()).find(|&t| view(mesh.corners(t)).is_none()).map(|t| format!("triangle {t} is degenerate")).or_else(
-        || intersecting(mesh).first().map(|[a, b]| format!("triangles {a} and {b} intersect")),
-    )
+    (0..mesh.triangles.len())
+        .find(|&t| view(mesh.corners(t)).is_none())
+        .map(|t| format!("triangle {t} is degenerate"))
+        .or_else(|| intersecting(mesh).first().map(|[a, b]| format!("triangles {a} and {b} intersect")))
 }
 
 /// All intersecting pairs, by comparing all with all.
 pub fn intersecting(mesh: &TriMesh) -> Vec<[u32; 2]> {
     let corners: Vec<[DVec3; 3]> = (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect();
-    let boxes: Vec<(DVec3, DVec3)> =
-        corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))).collect();
+    let boxes: Vec<(DVec3, DVec3)> = corners.iter().map(|[a, b, c]| (a.min(*b).min(*c), a.max(*b).max(*c))).collect();
     let mut found = Vec::new();
     for i in 0..corners.len() {
         for j in 0..i {
