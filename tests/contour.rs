@@ -6,6 +6,7 @@ mod contour_support;
 use contour_support::{Case, enclosed, fault, noise};
 use glam::{DVec3, IVec3};
 use meshwright::contour::Contour;
+use meshwright::mesh::TriMesh;
 use proptest::prelude::*;
 use rayon::prelude::*;
 
@@ -15,6 +16,18 @@ fn check(case: &Case, what: &str) {
     assert_eq!(raw.vertices.len(), raw.mesh.positions.len(), "{what}");
     assert_eq!(fault(&raw.mesh), None, "{what}");
     assert!(raw.mesh.triangles.is_empty() || enclosed(&raw.mesh) > 0.0, "{what}");
+    let vertices = raw.mesh.positions.len();
+    let euler = euler(&raw.mesh);
+    let coarse = case.collapsed(raw);
+    assert_eq!(fault(&coarse.contour.mesh), None, "collapsed, {what}");
+    assert_eq!(coarse.contour.vertices.len(), coarse.contour.mesh.positions.len(), "collapsed, {what}");
+    assert!(coarse.contour.mesh.positions.len() + coarse.merged <= vertices, "collapsed, {what}");
+    assert_eq!(self::euler(&coarse.contour.mesh), euler, "collapsed, {what}");
+}
+
+/// Euler characteristic of a closed triangle mesh.
+fn euler(mesh: &TriMesh) -> i64 {
+    mesh.positions.len() as i64 - mesh.triangles.len() as i64 / 2
 }
 
 fn in_pattern(pattern: u32, v: IVec3) -> bool {

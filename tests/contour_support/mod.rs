@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::{DVec3, IVec3};
-use meshwright::contour::{Contour, ContourOptions, Crossing, Edge, contour};
+use meshwright::contour::{Collapsed, Contour, ContourOptions, Crossing, Edge, collapse_same_voxel, contour};
 use meshwright::lattice::{Bricks, Grid, Lattice, brick_of, index_in_brick};
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
@@ -76,6 +76,20 @@ impl Case {
     pub fn contour(&self) -> Contour {
         let crossing = |edge| self.crossing(edge);
         contour(&self.lattice, &self.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap()
+    }
+}
+
+impl Case {
+    /// A contour after the collapse, with planes that have nothing to do with the surface.
+    pub fn collapsed(&self, raw: Contour) -> Collapsed {
+        let planes = |triangle: u32| {
+            let n = [0, 1, 2, 3].map(|k| noise(self.seed, IVec3::splat(triangle as i32), 64 + k));
+            let normal = (DVec3::new(n[0], n[1], n[2]) - 0.5).try_normalize()?;
+            let centre = self.lattice.to_model(self.lattice.dims.as_dvec3() * n[3]);
+            (triangle % 5 > 0).then_some((normal, normal.dot(centre)))
+        };
+        let find = |mesh: &TriMesh| Ok(intersecting(mesh).concat());
+        collapse_same_voxel(raw, &self.lattice, &planes, &find, &Progress::none()).unwrap()
     }
 }
 
