@@ -141,7 +141,8 @@ impl<'a> Merging<'a> {
                 if unjoined {
                     return None;
                 }
-                let points = vertices.iter().map(|&v| (raw.mesh.positions[v as usize], raw.vertices[v as usize].triangle));
+                let points =
+                    vertices.iter().map(|&v| (raw.mesh.positions[v as usize], raw.vertices[v as usize].triangle));
                 let (at, triangle) = place(points, merging.voxel(vertices[0]), lattice, planes);
                 Some(Group { members, at, triangle, merged: characteristic == 1 })
             })
@@ -234,9 +235,10 @@ impl<'a> Merging<'a> {
             progress.check()?;
             let this = &*self;
             let of_vertices = vertices.par_iter().with_min_len(256).filter_map(|v| star_fault(this, v));
-            let of_triangles = triangles.par_iter().with_min_len(256).filter_map(|&t| {
-                triangle_fault(this, t, this.triangle(this.raw.mesh.triangles[t as usize])?)
-            });
+            let of_triangles = triangles
+                .par_iter()
+                .with_min_len(256)
+                .filter_map(|&t| triangle_fault(this, t, this.triangle(this.raw.mesh.triangles[t as usize])?));
             let faults: Vec<Fault> = of_vertices.chain(of_triangles).collect();
             let mut harmful: Vec<u32> = faults.iter().map(|f| f.group).collect();
             harmful.sort_unstable();
@@ -298,7 +300,8 @@ impl<'a> Merging<'a> {
     fn mesh(&self, changed: Option<&[u32]>) -> Part {
         let near = changed.map(|groups| {
             let (vertices, _) = self.surroundings(groups);
-            let steps = || (-2..=2).flat_map(|z| (-2..=2).flat_map(move |y| (-2..=2).map(move |x| IVec3::new(x, y, z))));
+            let steps =
+                || (-2..=2).flat_map(|z| (-2..=2).flat_map(move |y| (-2..=2).map(move |x| IVec3::new(x, y, z))));
             vertices.iter().flat_map(|&v| steps().map(move |s| self.voxel(v) + s)).collect::<FxHashSet<IVec3>>()
         });
         let wanted = |t: [u32; 3]| near.as_ref().is_none_or(|near| t.iter().any(|&v| near.contains(&self.voxel(v))));

@@ -17,8 +17,8 @@ mod weld;
 
 pub use defects::{Defects, defects};
 pub use half_edges::{Compacted, HalfEdges, NotManifold, Ring};
-pub use self_intersection::{intersecting_triangles, self_intersections};
 pub use plane::Plane;
+pub use self_intersection::{intersecting_triangles, self_intersections};
 pub use tri_mesh::{Bounds, TriMesh};
 pub use triangle_pair::triangles_intersect;
 pub use validity::{ValidateOptions, Validity, validate};

@@ -222,7 +222,8 @@ fn measures(mesh: &TriMesh) -> (f64, f64) {
     // Seen from the mean corner, far-away meshes lose no digits and open ones have a volume that does not depend on
     // where they are.
     let corners = 3.0 * mesh.triangles.len().max(1) as f64;
-    let centre = mesh.triangles.iter().flatten().fold(DVec3::ZERO, |sum, &v| sum + mesh.positions[v as usize] / corners);
+    let centre =
+        mesh.triangles.iter().flatten().fold(DVec3::ZERO, |sum, &v| sum + mesh.positions[v as usize] / corners);
     let (volume, area) = (0..mesh.triangles.len()).fold((0.0, 0.0), |(volume, area), id| {
         let [a, b, c] = mesh.corners(id).map(|p| p - centre);
         (volume + a.dot(b.cross(c)), area + (b - a).cross(c - a).length())

@@ -171,15 +171,17 @@ pub fn boolean(
     let distance = sdf::robust(&spans, &soup.planes(&lattice), &votes, &options.robust);
     stages.begin("contour")?;
     let crossing = solid::crossings(&spans, &distance);
-    let contour = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;
-    if contour.mesh.triangles.is_empty() {
+    let mut surface = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;
+    if surface.mesh.triangles.is_empty() {
         return Err(Error::NothingEnclosed { reason: solid::why_nothing(&spans, &lattice, hits, operands.len()) });
     }
-    stages.begin("collapse")?;
-    let mesh = solid::collapse(contour, &soup, &lattice, options.collapse, progress)?;
+    if options.collapse {
+        stages.begin("collapse")?;
+        surface = solid::collapse(surface, &soup, &lattice, progress)?;
+    }
 
     let mut report = solid::report(&lattice, &spans, hits, &votes);
     report.orient = soup.reports;
     report.stages = stages.finish();
-    Ok(Outcome { mesh, lattice, report })
+    Ok(Outcome { mesh: surface.mesh, lattice, report })
 }

@@ -1,9 +1,14 @@
 //! The small pieces between the stages of a boolean: look-ups, counts, and words.
 
+use glam::DVec3;
+
+use super::prepare::Soup;
 use super::{LdiReport, Report, ThinReport};
-use crate::contour::{Crossing, Edge};
+use crate::contour::{Contour, Crossing, Edge, collapse_same_voxel};
 use crate::lattice::{Grid, Lattice};
 use crate::ldi::{Layers, Lengths, Spans, THIN, edge_crossing, lengths};
+use crate::mesh::{Plane, TriMesh, intersecting_triangles};
+use crate::progress::{Progress, Stopped};
 use crate::vote::{Votes, doubts};
 
 /// Crossings before and after the spans were made.
@@ -128,13 +133,17 @@ pub(super) fn why_nothing(spans: &[Spans], lattice: &Lattice, count: Count, oper
     }
 }
 
-/// Collapses within voxels unless it is turned off.
+/// Merges the vertices of each voxel.
 pub(super) fn collapse(
-    contour: crate::contour::Contour,
-    _soup: &super::prepare::Soup,
-    _lattice: &Lattice,
-    _wanted: bool,
-    _progress: &crate::progress::Progress,
-) -> Result<crate::mesh::TriMesh, super::Error> {
-    Ok(contour.mesh)
+    contour: Contour,
+    soup: &Soup,
+    lattice: &Lattice,
+    progress: &Progress,
+) -> Result<Contour, Stopped> {
+    let plane = |triangle: u32| {
+        let plane = Plane::through(soup.mesh.corners(triangle as usize));
+        (plane.normal != DVec3::ZERO).then_some((plane.normal, plane.offset))
+    };
+    let find_intersecting = |mesh: &TriMesh| intersecting_triangles(mesh, progress);
+    Ok(collapse_same_voxel(contour, lattice, &plane, &find_intersecting, progress)?.contour)
 }
