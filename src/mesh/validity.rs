@@ -188,7 +188,7 @@ fn without_intersections(mesh: &TriMesh, weld: bool) -> Validity {
 /// Whether an edge has an even number of triangles that do not run half one way and half the other.
 pub(super) fn is_inconsistent(edges: &Edges<'_>, edge: &super::edges::Edge<'_>) -> bool {
     let up = edge.halves().filter(|&half| edges.runs_up(half)).count();
-    edge.count() % 2 == 0 && 2 * up != edge.count()
+    edge.count().is_multiple_of(2) && 2 * up != edge.count()
 }
 
 /// The triangles as the topology sees them.
@@ -222,7 +222,8 @@ fn measures(mesh: &TriMesh) -> (f64, f64) {
     // Seen from the mean corner, far-away meshes lose no digits and open ones have a volume that does not depend on
     // where they are.
     let corners = 3.0 * mesh.triangles.len().max(1) as f64;
-    let centre = mesh.triangles.iter().flatten().fold(DVec3::ZERO, |sum, &v| sum + mesh.positions[v as usize] / corners);
+    let centre =
+        mesh.triangles.iter().flatten().fold(DVec3::ZERO, |sum, &v| sum + mesh.positions[v as usize] / corners);
     let (volume, area) = (0..mesh.triangles.len()).fold((0.0, 0.0), |(volume, area), id| {
         let [a, b, c] = mesh.corners(id).map(|p| p - centre);
         (volume + a.dot(b.cross(c)), area + (b - a).cross(c - a).length())
