@@ -167,7 +167,7 @@ impl HalfEdges {
     /// The previous half-edge around the triangle.
     #[inline]
     pub fn prev(&self, half_edge: u32) -> u32 {
-        if half_edge % 3 == 0 { half_edge + 2 } else { half_edge - 1 }
+        if half_edge.is_multiple_of(3) { half_edge + 2 } else { half_edge - 1 }
     }
 
     /// The half-edge that runs the other way, in the neighbouring triangle.

@@ -188,7 +188,7 @@ fn without_intersections(mesh: &TriMesh, weld: bool) -> Validity {
 /// Whether an edge has an even number of triangles that do not run half one way and half the other.
 pub(super) fn is_inconsistent(edges: &Edges<'_>, edge: &super::edges::Edge<'_>) -> bool {
     let up = edge.halves().filter(|&half| edges.runs_up(half)).count();
-    edge.count() % 2 == 0 && 2 * up != edge.count()
+    edge.count().is_multiple_of(2) && 2 * up != edge.count()
 }
 
 /// The triangles as the topology sees them.
