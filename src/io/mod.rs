@@ -1,1 +1,166 @@
-//! (being built)
+//! Mesh files, in and out: one folder or file a format, detection, and writing that never leaves
+//! half a file behind.
+//!
+//! A reader takes the whole file as bytes and returns a soup or an error that names the place. It
+//! trusts no count in the file: memory is taken only for what the bytes back. Nothing is repaired,
+//! scaled or merged here, except that STL, which repeats a vertex for every facet, is welded by
+//! equal coordinates. The rules for each format are in `docs/formats.md`.
+//!
+//! ```
+//! use meshwright::io::{Format, WriteOptions, encode, read_bytes};
+//!
+//! let off = b"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+//! let loaded = read_bytes(off, None, None)?;
+//! assert_eq!((loaded.format, loaded.mesh.triangles.len()), (Format::Off, 4));
+//!
+//! let mut stl = Vec::new();
+//! encode(&loaded.mesh, &WriteOptions::new(Format::Stl), &mut stl)?;
+//! assert_eq!(read_bytes(&stl, None, None)?.mesh.triangles.len(), 4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod error;
+mod format;
+mod gltf;
+mod obj;
+mod off;
+mod ply;
+mod polygon;
+mod save;
+mod soup;
+mod stl;
+mod text;
+mod three_mf;
+mod unit;
+
+use std::fs;
+use std::io::Write;
+use std::ops::Range;
+use std::path::Path;
+
+use crate::mesh::TriMesh;
+
+pub use error::{Place, ReadError, ReadProblem, WriteError, WriteProblem};
+pub use format::{Format, UnknownFormat};
+pub use save::save_bytes;
+pub use unit::{Unit, UnknownUnit};
+
+/// A named piece of a file: an object, a solid, a node.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Part {
+    /// The name in the file; empty where it has none.
+    pub name: String,
+    /// Its triangles in the mesh.
+    pub triangles: Range<usize>,
+}
+
+/// A file as read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loaded {
+    /// The triangles: at least one; every coordinate finite, every index in range.
+    pub mesh: TriMesh,
+    /// The format that was found.
+    pub format: Format,
+    /// The unit of length that the file states.
+    pub unit: Option<Unit>,
+    /// The pieces of the file, in order and without gaps; at least one, none empty.
+    pub parts: Vec<Part>,
+    /// Sentences about what was left out or read otherwise than it stands.
+    pub warnings: Vec<String>,
+}
+
+/// How to write a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WriteOptions {
+    /// The format.
+    pub format: Format,
+    /// STL and PLY as text. The other formats have one form each.
+    pub ascii: bool,
+    /// The unit of length of the coordinates. 3MF states it; glTF, whose own unit is the metre,
+    /// keeps it as a note. The other formats have no place for it. Coordinates are never scaled.
+    pub unit: Option<Unit>,
+}
+
+impl WriteOptions {
+    /// The usual form of `format`, without a unit.
+    pub fn new(format: Format) -> Self {
+        Self { format, ascii: false, unit: None }
+    }
+}
+
+/// Reads the mesh file at `path`; its format is told by content, then by extension.
+///
+/// # Errors
+/// When the file cannot be read or is not sound: see [`ReadProblem`].
+pub fn read(path: &Path) -> Result<Loaded, ReadError> {
+    let bytes = fs::read(path).map_err(|e| ReadError::new(e.into()).in_file(Some(path), None))?;
+    read_bytes(&bytes, None, Some(path))
+}
+
+/// Reads a mesh from `bytes`. With `format` none, it is told by content, then by the extension of
+/// `path`. `path` also names the file in errors and is where a glTF's external buffers lie beside;
+/// without it they are refused.
+///
+/// # Errors
+/// When the bytes are not a sound file: see [`ReadProblem`].
+pub fn read_bytes(bytes: &[u8], format: Option<Format>, path: Option<&Path>) -> Result<Loaded, ReadError> {
+    let found = format.or_else(|| Format::detect(bytes, path));
+    let loaded = match found {
+        _ if bytes.is_empty() => Err(ReadProblem::Empty.into()),
+        None => Err(ReadProblem::UnknownFormat.into()),
+        Some(Format::Stl) => stl::read(bytes),
+        Some(Format::Obj) => obj::read(bytes),
+        Some(Format::Ply) => ply::read(bytes),
+        Some(Format::Off) => off::read(bytes),
+        Some(Format::Glb) => gltf::read_glb(bytes, path),
+        Some(Format::Gltf) => gltf::read_json(bytes, path),
+        Some(Format::ThreeMf) => three_mf::read(bytes),
+    };
+    loaded.map_err(|error| error.in_file(path, found))
+}
+
+/// Writes `mesh` to `path`, whole or not at all: see [`save_bytes`].
+///
+/// # Errors
+/// See [`WriteProblem`].
+pub fn write(path: &Path, mesh: &TriMesh, options: &WriteOptions) -> Result<(), WriteError> {
+    save::save(path, |out| encode(mesh, options, out))
+}
+
+/// Writes `mesh` as bytes to `out`. Coordinates are stored as they are where the format holds
+/// `f64`, and rounded to `f32` in STL, glTF and GLB.
+///
+/// # Errors
+/// See [`WriteProblem`]. The mesh is checked before the first byte is written.
+pub fn encode(mesh: &TriMesh, options: &WriteOptions, out: &mut dyn Write) -> Result<(), WriteError> {
+    check(mesh, options.format)?;
+    match options.format {
+        Format::Stl if options.ascii => stl::write_ascii(mesh, out),
+        Format::Stl => stl::write_binary(mesh, out),
+        Format::Obj => obj::write(mesh, out),
+        Format::Ply if options.ascii => ply::write_ascii(mesh, out),
+        Format::Ply => ply::write_binary(mesh, out),
+        Format::Off => off::write(mesh, out),
+        Format::Glb => gltf::write_glb(mesh, options.unit, out),
+        Format::Gltf => gltf::write_json(mesh, options.unit, out),
+        Format::ThreeMf => three_mf::write(mesh, options.unit, out),
+    }
+}
+
+fn check(mesh: &TriMesh, format: Format) -> Result<(), WriteError> {
+    if mesh.triangles.is_empty() {
+        return Err(WriteProblem::NoTriangles.into());
+    }
+    let count = mesh.positions.len();
+    if let Some(triangle) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= count)) {
+        return Err(WriteProblem::BadIndex { triangle }.into());
+    }
+    let single = matches!(format, Format::Stl | Format::Glb | Format::Gltf);
+    let holds = |x: f64| if single { (x as f32).is_finite() } else { x.is_finite() };
+    for (vertex, p) in mesh.positions.iter().enumerate() {
+        if let Some(value) = p.to_array().into_iter().find(|&x| !holds(x)) {
+            return Err(WriteProblem::Coordinate { vertex, value, format }.into());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,156 @@
+//! Accessors: typed numbers in a buffer view, with sparse replacements.
+
+use gltf_json::accessor::{Accessor, ComponentType, IndexComponentType, Type};
+use gltf_json::validation::Checked;
+use gltf_json::{Index, Root};
+
+use super::super::error::{ReadError, ReadProblem};
+use super::super::soup::Expansion;
+use super::buffers::{Buffers, missing};
+
+/// A view of fields that are known to lie within their buffer.
+struct Fields<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+    size: usize,
+    count: usize,
+}
+
+impl<'a> Fields<'a> {
+    /// `count` fields of `size` bytes from byte `offset`, `stride` bytes apart.
+    fn new(bytes: &'a [u8], offset: u64, stride: Option<usize>, size: usize, count: u64) -> Result<Self, ReadProblem> {
+        let stride = stride.unwrap_or(size);
+        if stride < size {
+            return Err(ReadProblem::syntax(format!("a stride of at least {size} bytes"), stride.to_string()));
+        }
+        let all =
+            count.checked_sub(1).map_or(Some(0), |gaps| gaps.checked_mul(stride as u64)?.checked_add(size as u64));
+        let end = all.and_then(|all| all.checked_add(offset));
+        match (end, usize::try_from(offset), usize::try_from(count)) {
+            (Some(end), Ok(offset), Ok(count)) if end <= bytes.len() as u64 => {
+                Ok(Self { bytes: &bytes[offset..], stride, size, count })
+            }
+            _ => {
+                let expected = format!("{count} values of {size} bytes from byte {offset}");
+                Err(ReadProblem::truncated(expected, format!("the buffer view has {} bytes", bytes.len())))
+            }
+        }
+    }
+
+    fn iter(&self) -> impl Iterator<Item = &'a [u8]> {
+        let (bytes, stride, size) = (self.bytes, self.stride, self.size);
+        (0..self.count).map(move |i| &bytes[i * stride..i * stride + size])
+    }
+}
+
+fn accessor<'r>(root: &'r Root, index: Index<Accessor>) -> Result<&'r Accessor, ReadError> {
+    let count = root.accessors.len();
+    root.get(index).ok_or_else(|| ReadError::new(missing(index.value(), count, "accessors")))
+}
+
+fn item(index: Index<Accessor>) -> String {
+    format!("accessors[{}]", index.value())
+}
+
+/// The positions behind accessor `index`: floats, or integers of `KHR_mesh_quantization`.
+pub(super) fn positions(
+    root: &Root,
+    buffers: &Buffers<'_>,
+    index: Index<Accessor>,
+    allowance: &mut Expansion,
+) -> Result<Vec<[f64; 3]>, ReadError> {
+    let fail = |problem| ReadError::item(item(index), problem);
+    let accessor = accessor(root, index)?;
+    let Checked::Valid(kind) = &accessor.component_type else {
+        return Err(fail(ReadProblem::syntax("a component type", "another value")));
+    };
+    if !matches!(accessor.type_, Checked::Valid(Type::Vec3)) {
+        return Err(fail(ReadProblem::syntax("positions of type VEC3", "another type")));
+    }
+    let (kind, count) = (kind.0, accessor.count.0);
+    let size = 3 * kind.size();
+    let normalized = accessor.normalized;
+    let decode = |field: &[u8]| {
+        let mut p = [0.0; 3];
+        for (x, part) in p.iter_mut().zip(field.chunks_exact(kind.size())) {
+            *x = component(part, kind, normalized);
+        }
+        p
+    };
+    allowance.spend(count).map_err(fail)?;
+    let mut points: Vec<[f64; 3]> = match accessor.buffer_view {
+        Some(view) => {
+            let (bytes, stride) = buffers.view(root, view)?;
+            let offset = accessor.byte_offset.unwrap_or_default().0;
+            Fields::new(bytes, offset, stride, size, count).map_err(fail)?.iter().map(decode).collect()
+        }
+        None => vec![[0.0; 3]; usize::try_from(count).unwrap_or_default()],
+    };
+    if let Some(sparse) = &accessor.sparse {
+        let (bytes, _) = buffers.view(root, sparse.indices.buffer_view)?;
+        let places =
+            integers(bytes, sparse.indices.byte_offset.0, None, &sparse.indices.component_type, sparse.count.0)
+                .map_err(fail)?;
+        let (bytes, _) = buffers.view(root, sparse.values.buffer_view)?;
+        let values = Fields::new(bytes, sparse.values.byte_offset.0, None, size, sparse.count.0).map_err(fail)?;
+        for (place, field) in places.into_iter().zip(values.iter()) {
+            let count = points.len();
+            *points.get_mut(place as usize).ok_or_else(|| fail(missing(place as usize, count, "values")))? =
+                decode(field);
+        }
+    }
+    Ok(points)
+}
+
+/// The indices behind accessor `index`.
+pub(super) fn indices(
+    root: &Root,
+    buffers: &Buffers<'_>,
+    index: Index<Accessor>,
+    allowance: &mut Expansion,
+) -> Result<Vec<u32>, ReadError> {
+    let fail = |problem| ReadError::item(item(index), problem);
+    let accessor = accessor(root, index)?;
+    let (Some(view), None, Checked::Valid(Type::Scalar)) = (accessor.buffer_view, &accessor.sparse, &accessor.type_)
+    else {
+        return Err(fail(ReadProblem::syntax("scalar indices in a buffer view", "another kind of accessor")));
+    };
+    let kind = match &accessor.component_type {
+        Checked::Valid(kind) => Checked::Valid(IndexComponentType(kind.0)),
+        Checked::Invalid => Checked::Invalid,
+    };
+    allowance.spend(accessor.count.0).map_err(fail)?;
+    let (bytes, stride) = buffers.view(root, view)?;
+    integers(bytes, accessor.byte_offset.unwrap_or_default().0, stride, &kind, accessor.count.0).map_err(fail)
+}
+
+fn integers(
+    bytes: &[u8],
+    offset: u64,
+    stride: Option<usize>,
+    kind: &Checked<IndexComponentType>,
+    count: u64,
+) -> Result<Vec<u32>, ReadProblem> {
+    use ComponentType::{U8, U16, U32};
+    let Checked::Valid(IndexComponentType(kind @ (U8 | U16 | U32))) = *kind else {
+        return Err(ReadProblem::syntax("indices of an unsigned integer type", "another type"));
+    };
+    let fields = Fields::new(bytes, offset, stride, kind.size(), count)?;
+    Ok(fields.iter().map(|field| component(field, kind, false) as u32).collect())
+}
+
+/// The number in `field`; the caller sees to its size.
+fn component(field: &[u8], kind: ComponentType, normalized: bool) -> f64 {
+    let mut raw = [0; 4];
+    raw[..field.len().min(4)].copy_from_slice(&field[..field.len().min(4)]);
+    let bits = u32::from_le_bytes(raw);
+    let (value, one) = match kind {
+        ComponentType::I8 => (f64::from(bits as i8), 127.0),
+        ComponentType::U8 => (f64::from(bits as u8), 255.0),
+        ComponentType::I16 => (f64::from(bits as i16), 32767.0),
+        ComponentType::U16 => (f64::from(bits as u16), 65535.0),
+        ComponentType::U32 => (f64::from(bits), 1.0),
+        ComponentType::F32 => (f64::from(f32::from_bits(bits)), 1.0),
+    };
+    if normalized { (value / one).max(-1.0) } else { value }
+}

@@ -1,0 +1,157 @@
+//! The bytes behind a document: the binary chunk, data URIs and files beside it.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use base64::Engine;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use gltf_json::{Index, Root, buffer::View};
+
+use super::super::error::{ReadError, ReadProblem};
+use super::super::text::quoted;
+
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
+/// Every buffer, whole.
+pub(super) struct Buffers<'a> {
+    /// Different contents: a file that several buffers name is read once.
+    contents: Vec<Cow<'a, [u8]>>,
+    /// For each buffer, its content and how much of it belongs to the buffer.
+    buffers: Vec<(usize, usize)>,
+}
+
+impl<'a> Buffers<'a> {
+    pub(super) fn load(root: &Root, binary: Option<&'a [u8]>, path: Option<&Path>) -> Result<Self, ReadError> {
+        let mut contents = vec![Cow::Borrowed(binary.unwrap_or_default())];
+        let mut buffers = Vec::with_capacity(root.buffers.len());
+        let mut known = BTreeMap::new();
+        for (i, buffer) in root.buffers.iter().enumerate() {
+            let place = |problem| ReadError::item(format!("buffers[{i}]"), problem);
+            let content = match &buffer.uri {
+                None if i == 0 => 0,
+                // Without a URI only the first buffer has bytes; extensions use such buffers.
+                None => {
+                    contents.push(Cow::Borrowed(&[]));
+                    contents.len() - 1
+                }
+                Some(uri) => match known.get(uri.as_str()) {
+                    Some(&content) => content,
+                    None => {
+                        contents.push(Cow::Owned(fetch(uri, path).map_err(place)?));
+                        known.insert(uri.as_str(), contents.len() - 1);
+                        contents.len() - 1
+                    }
+                },
+            };
+            let length = usize::try_from(buffer.byte_length.0).unwrap_or(usize::MAX);
+            buffers.push((content, length.min(contents[content].len())));
+        }
+        Ok(Self { contents, buffers })
+    }
+
+    /// Bytes of all different contents.
+    pub(super) fn bytes(&self) -> usize {
+        self.contents.iter().map(|content| content.len()).sum()
+    }
+
+    /// The bytes of a buffer view and its stride.
+    pub(super) fn view(&self, root: &Root, view: Index<View>) -> Result<(&[u8], Option<usize>), ReadError> {
+        let item = format!("bufferViews[{}]", view.value());
+        let fail = |problem| ReadError::item(item.clone(), problem);
+        let view =
+            root.get(view).ok_or_else(|| fail(missing(view.value(), root.buffer_views.len(), "buffer views")))?;
+        let buffer = view.buffer.value();
+        let &(content, length) =
+            self.buffers.get(buffer).ok_or_else(|| fail(missing(buffer, self.buffers.len(), "buffers")))?;
+        let start = view.byte_offset.unwrap_or_default().0;
+        let range = start.checked_add(view.byte_length.0).and_then(|end| {
+            Some(usize::try_from(start).ok()?..usize::try_from(end).ok().filter(|&end| end <= length)?)
+        });
+        let bytes = range.and_then(|range| self.contents[content].get(range)).ok_or_else(|| {
+            let expected = format!("{} bytes from byte {start} of buffer {buffer}", view.byte_length.0);
+            fail(ReadProblem::truncated(expected, format!("there are {length}")))
+        })?;
+        Ok((bytes, view.byte_stride.map(|stride| stride.0)))
+    }
+}
+
+/// The problem of an index that leads nowhere.
+pub(super) fn missing(index: usize, count: usize, what: &'static str) -> ReadProblem {
+    ReadProblem::IndexOutOfRange { index: index as i64, count, what }
+}
+
+fn fetch(uri: &str, path: Option<&Path>) -> Result<Vec<u8>, ReadProblem> {
+    if let Some(data) = uri.strip_prefix("data:") {
+        let (kind, data) =
+            data.split_once(',').ok_or_else(|| ReadProblem::syntax("a comma in a data URI", quoted(uri.as_bytes())))?;
+        return if kind.ends_with(";base64") {
+            BASE64.decode(data).map_err(|e| ReadProblem::syntax("base64 data", e.to_string()))
+        } else {
+            Ok(percent_decoded(data))
+        };
+    }
+    let base = path.ok_or_else(|| {
+        let uri = quoted(uri.as_bytes());
+        ReadProblem::Unsupported(format!(
+            "the buffer {uri} lies in another file, which a stream does not give; read it from its place, or use GLB"
+        ))
+    })?;
+    let file = file_beside(uri, base).ok_or_else(|| {
+        let uri = quoted(uri.as_bytes());
+        ReadProblem::Unsupported(format!(
+            "the buffer {uri} is not a file in the folder of the glTF file, and is not read"
+        ))
+    })?;
+    fs::read(&file).map_err(|e| ReadProblem::Io(std::io::Error::new(e.kind(), format!("{}: {e}", file.display()))))
+}
+
+/// The file that `uri` names below the folder of `base`; `None` for an address elsewhere.
+fn file_beside(uri: &str, base: &Path) -> Option<PathBuf> {
+    let decoded = String::from_utf8(percent_decoded(uri)).ok()?;
+    let relative = Path::new(&decoded);
+    let plain = relative.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    let has_scheme = decoded.split(['/', '?', '#']).next().is_some_and(|first| first.contains(':'));
+    (plain && !has_scheme && !decoded.is_empty()).then(|| base.parent().unwrap_or(Path::new("")).join(relative))
+}
+
+fn percent_decoded(text: &str) -> Vec<u8> {
+    let bytes = text.as_bytes();
+    let mut out = Vec::with_capacity(bytes.len());
+    let mut i = 0;
+    while let Some(&byte) = bytes.get(i) {
+        let hex = || u8::from_str_radix(std::str::from_utf8(bytes.get(i + 1..i + 3)?).ok()?, 16).ok();
+        match (byte == b'%').then(hex).flatten() {
+            Some(value) => {
+                out.push(value);
+                i += 3;
+            }
+            None => {
+                out.push(byte);
+                i += 1;
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_elsewhere_are_not_found() {
+        let base = Path::new("models/a.gltf");
+        assert_eq!(file_beside("my%20mesh.bin", base), Some("models/my mesh.bin".into()));
+        assert_eq!(file_beside("sub/./b.bin", base), Some("models/sub/./b.bin".into()));
+        for uri in ["/etc/passwd", "../b.bin", "%2e%2e/b.bin", "sub/../../b.bin", "http://x/b.bin", "file:b", "C:b", ""]
+        {
+            assert_eq!(file_beside(uri, base), None, "{uri}");
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! glTF 2.0, as JSON and in one binary file. The JSON is taken apart by `gltf-json`; every index,
+//! range and transform is checked here, because the types promise none of them.
+
+mod accessor;
+mod buffers;
+mod scene;
+mod write;
+
+use std::path::Path;
+
+use gltf_json::Root;
+
+use self::buffers::Buffers;
+use super::error::{ReadError, ReadProblem};
+use super::soup::Expansion;
+use super::{Format, Loaded, Unit};
+
+pub(super) use write::{write_glb, write_json};
+
+const MAGIC: &[u8] = b"glTF";
+const JSON_CHUNK: &[u8] = b"JSON";
+const BINARY_CHUNK: &[u8] = b"BIN\0";
+
+/// Compressions that change how positions or indices are stored.
+const COMPRESSED: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+/// Reads a glTF file in JSON.
+pub(super) fn read_json(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, ReadError> {
+    let json = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    read_document(json, None, bytes.len(), path, Format::Gltf)
+}
+
+/// Reads a binary glTF file: a header and chunks, the JSON first.
+pub(super) fn read_glb(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, ReadError> {
+    let word = |at: usize| bytes.get(at..at + 4).and_then(|w| w.try_into().ok()).map(u32::from_le_bytes);
+    let truncated = |expected: &str| {
+        let found = format!("the file ends after {} bytes", bytes.len());
+        ReadError::byte(bytes.len(), ReadProblem::truncated(expected, found))
+    };
+    if !bytes.starts_with(MAGIC) {
+        let found = super::text::quoted(&bytes[..bytes.len().min(4)]);
+        return Err(ReadError::byte(0, ReadProblem::syntax("`glTF`", found)));
+    }
+    let version = word(4).ok_or_else(|| truncated("a version"))?;
+    if version != 2 {
+        let problem = ReadProblem::Unsupported(format!("glTF version {version} is not read here, only version 2"));
+        return Err(ReadError::byte(4, problem));
+    }
+    let length = word(8).ok_or_else(|| truncated("a length"))? as usize;
+    let whole = bytes.get(..length).ok_or_else(|| truncated(&format!("{length} bytes (bytes 8 to 11 say so)")))?;
+    let mut chunks = [None; 2];
+    let mut rest = whole.get(12..).unwrap_or_default();
+    while let Some((head, tail)) = rest.split_at_checked(8) {
+        let size = u32::from_le_bytes([head[0], head[1], head[2], head[3]]) as usize;
+        let (body, after) = tail.split_at_checked(size).ok_or_else(|| truncated("a whole chunk"))?;
+        let slot = if &head[4..] == JSON_CHUNK { Some(0) } else { (&head[4..] == BINARY_CHUNK).then_some(1) };
+        if let Some(slot) = slot {
+            chunks[slot] = chunks[slot].or(Some(body));
+        }
+        rest = after;
+    }
+    let json = chunks[0].ok_or_else(|| ReadError::byte(12, ReadProblem::syntax("a JSON chunk", "none")))?;
+    read_document(json, chunks[1], bytes.len(), path, Format::Glb)
+}
+
+fn read_document(
+    json: &[u8],
+    binary: Option<&[u8]>,
+    length: usize,
+    path: Option<&Path>,
+    format: Format,
+) -> Result<Loaded, ReadError> {
+    let root: Root = gltf_json::deserialize::from_slice(json).map_err(|e| not_gltf(&e))?;
+    if let Some(name) = root.extensions_required.iter().find(|name| COMPRESSED.contains(&name.as_str())) {
+        let problem = ReadProblem::Unsupported(format!("the mesh data is compressed ({name}); export without it"));
+        return Err(ReadError::item("extensionsRequired", problem));
+    }
+    let buffers = Buffers::load(&root, binary, path)?;
+    let mut allowance = Expansion::for_input(length.max(buffers.bytes()) as u64);
+    let soup = scene::read(&root, &buffers, &mut allowance)?;
+    soup.finish(format, Some(unit(&root)))
+}
+
+fn not_gltf(error: &gltf_json::Error) -> ReadError {
+    let found = error.to_string();
+    match error.line() {
+        0 => ReadError::new(ReadProblem::syntax("glTF in JSON", found)),
+        line => ReadError::line(line, ReadProblem::syntax("glTF in JSON", found)),
+    }
+}
+
+/// The note that the writer leaves in `asset.extras`.
+#[derive(serde::Deserialize)]
+struct Note {
+    unit: String,
+}
+
+/// Metres, as the specification says, unless a note of ours says otherwise.
+fn unit(root: &Root) -> Unit {
+    let note = root.asset.extras.as_ref().and_then(|extras| serde_json::from_str::<Note>(extras.get()).ok());
+    note.and_then(|note| note.unit.parse().ok()).unwrap_or(Unit::Metre)
+}

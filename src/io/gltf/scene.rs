@@ -1,0 +1,217 @@
+//! The node tree: transforms are applied, every node with a mesh becomes a part.
+
+use std::collections::BTreeMap;
+
+use glam::{DMat4, DQuat, DVec3};
+use gltf_json::mesh::{Mesh, Mode, Primitive, Semantic};
+use gltf_json::scene::Node;
+use gltf_json::validation::Checked;
+use gltf_json::{Index, Root};
+
+use super::super::error::{ReadError, ReadProblem};
+use super::super::soup::{Expansion, Soup, counted, too_many_vertices};
+use super::accessor;
+use super::buffers::{Buffers, missing};
+
+/// The soup of the default scene, or of the first, or of every node, or of every mesh: whichever
+/// is there.
+pub(super) fn read(root: &Root, buffers: &Buffers<'_>, allowance: &mut Expansion) -> Result<Soup, ReadError> {
+    let mut reader = Reader {
+        root,
+        buffers,
+        allowance,
+        soup: Soup::new(),
+        used: vec![false; root.meshes.len()],
+        other_primitives: 0,
+        posed: 0,
+    };
+    match tops(root)? {
+        Some(tops) => reader.nodes(tops)?,
+        None => {
+            for mesh in 0..root.meshes.len() {
+                reader.mesh(Index::new(mesh as u32), "", &DMat4::IDENTITY)?;
+            }
+        }
+    }
+    Ok(reader.finish())
+}
+
+/// The nodes to start from; `None` when the file has no nodes.
+fn tops(root: &Root) -> Result<Option<Vec<Index<Node>>>, ReadError> {
+    if let Some(scene) = root.scene {
+        let problem = || missing(scene.value(), root.scenes.len(), "scenes");
+        let scene = root.get(scene).ok_or_else(|| ReadError::item("scene", problem()))?;
+        return Ok(Some(scene.nodes.clone()));
+    }
+    if let Some(scene) = root.scenes.first() {
+        return Ok(Some(scene.nodes.clone()));
+    }
+    if root.nodes.is_empty() {
+        return Ok(None);
+    }
+    let mut is_child = vec![false; root.nodes.len()];
+    for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
+        if let Some(flag) = is_child.get_mut(child.value()) {
+            *flag = true;
+        }
+    }
+    Ok(Some((0..root.nodes.len()).filter(|&i| !is_child[i]).map(|i| Index::new(i as u32)).collect()))
+}
+
+struct Reader<'a, 'b> {
+    root: &'a Root,
+    buffers: &'a Buffers<'a>,
+    allowance: &'b mut Expansion,
+    soup: Soup,
+    used: Vec<bool>,
+    other_primitives: usize,
+    posed: usize,
+}
+
+impl Reader<'_, '_> {
+    /// Walks the trees under `tops` depth first. A node has one parent at most, so a node met
+    /// twice is an error; that also ends cycles.
+    fn nodes(&mut self, tops: Vec<Index<Node>>) -> Result<(), ReadError> {
+        let mut met = vec![false; self.root.nodes.len()];
+        let mut stack: Vec<_> = tops.into_iter().rev().map(|top| (top, DMat4::IDENTITY)).collect();
+        while let Some((index, parent)) = stack.pop() {
+            let i = index.value();
+            let fail = |problem| ReadError::item(format!("nodes[{i}]"), problem);
+            let count = self.root.nodes.len();
+            let node = self.root.get(index).ok_or_else(|| fail(missing(i, count, "nodes")))?;
+            if std::mem::replace(&mut met[i], true) {
+                return Err(fail(ReadProblem::syntax("a tree of nodes", "a node that is reached twice")));
+            }
+            let place = parent * local_transform(node);
+            if let Some(mesh) = node.mesh {
+                self.posed += usize::from(node.skin.is_some());
+                self.mesh(mesh, node.name.as_deref().unwrap_or_default(), &place)?;
+            }
+            stack.extend(node.children.iter().flatten().rev().map(|&child| (child, place)));
+        }
+        Ok(())
+    }
+
+    fn mesh(&mut self, index: Index<Mesh>, name: &str, place: &DMat4) -> Result<(), ReadError> {
+        let i = index.value();
+        let fail = |problem| ReadError::item(format!("meshes[{i}]"), problem);
+        let mesh = self.root.get(index).ok_or_else(|| fail(missing(i, self.root.meshes.len(), "meshes")))?;
+        self.used[i] = true;
+        // Counted even when there is nothing in it, so that the work is bounded too.
+        self.allowance.spend(1 + mesh.primitives.len() as u64).map_err(fail)?;
+        let name = if name.is_empty() { mesh.name.as_deref().unwrap_or_default() } else { name };
+        self.soup.begin_part(name.as_bytes());
+        // Primitives of a mesh often share one accessor: its vertices are taken once.
+        let mut known = BTreeMap::new();
+        for primitive in &mesh.primitives {
+            let Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) = primitive.mode
+            else {
+                self.other_primitives += 1;
+                continue;
+            };
+            self.posed += usize::from(primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()));
+            self.primitive(primitive, mode, place, &mut known).map_err(|e| match e.place {
+                Some(_) => e,
+                None => fail(*e.problem),
+            })?;
+        }
+        Ok(())
+    }
+
+    fn primitive(
+        &mut self,
+        primitive: &Primitive,
+        mode: Mode,
+        place: &DMat4,
+        known: &mut BTreeMap<usize, (u32, usize)>,
+    ) -> Result<(), ReadError> {
+        let Some(&positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
+            self.other_primitives += 1;
+            return Ok(());
+        };
+        let (first, count) = match known.get(&positions.value()) {
+            Some(&vertices) => vertices,
+            None => {
+                let vertices = self.vertices(positions, place)?;
+                known.insert(positions.value(), vertices);
+                vertices
+            }
+        };
+        let indices = match primitive.indices {
+            Some(indices) => accessor::indices(self.root, self.buffers, indices, self.allowance)?,
+            None => {
+                self.allowance.spend(count as u64)?;
+                (0..count as u32).collect()
+            }
+        };
+        if let Some(&index) = indices.iter().find(|&&v| v as usize >= count) {
+            let item = primitive.indices.map_or(0, |indices| indices.value());
+            return Err(ReadError::item(format!("accessors[{item}]"), ReadProblem::vertex(i64::from(index), count)));
+        }
+        let corners: Vec<u32> = indices.into_iter().map(|v| v + first).collect();
+        let start = self.soup.triangles.len();
+        match mode {
+            Mode::TriangleStrip => self.soup.strip(&corners),
+            Mode::TriangleFan if corners.len() >= 3 => super::super::polygon::fan(&corners, &mut self.soup.triangles),
+            Mode::TriangleFan => {}
+            _ => self.soup.triangles.extend(corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]])),
+        }
+        // A mirroring transform turns every triangle over; the specification asks to turn them back.
+        if place.determinant() < 0.0 {
+            self.soup.triangles[start..].iter_mut().for_each(|t| t.swap(1, 2));
+        }
+        Ok(())
+    }
+
+    /// The transformed vertices of an accessor: the number of the first and how many.
+    fn vertices(&mut self, index: Index<gltf_json::Accessor>, place: &DMat4) -> Result<(u32, usize), ReadError> {
+        let points = accessor::positions(self.root, self.buffers, index, self.allowance)?;
+        let first = self.soup.positions.len();
+        if first + points.len() > u32::MAX as usize {
+            return Err(too_many_vertices());
+        }
+        self.soup.positions.reserve(points.len());
+        for &point in &points {
+            let p = place.transform_point3(DVec3::from(point));
+            if !p.is_finite() {
+                let found = format!("{} (in the file: {})", p, DVec3::from(point));
+                return Err(ReadError::item(format!("accessors[{}]", index.value()), ReadProblem::NotFinite { found }));
+            }
+            self.soup.positions.push(p);
+        }
+        Ok((first as u32, points.len()))
+    }
+
+    fn finish(mut self) -> Soup {
+        let mut warn = |count: usize, what: &str, rest: &str| {
+            if count > 0 {
+                self.soup.warnings.push(format!("{} {rest}", counted(count, what)));
+            }
+        };
+        warn(self.other_primitives, "primitive", "without triangles left out");
+        warn(self.posed, "mesh", "with a skin or morph targets read in the pose they are stored in");
+        warn(self.used.iter().filter(|used| !**used).count(), "mesh", "not part of the scene left out");
+        let instanced = self.root.extensions_used.iter().any(|name| name == "EXT_mesh_gpu_instancing");
+        warn(
+            usize::from(instanced),
+            "extension",
+            "left out: EXT_mesh_gpu_instancing, the copies it places are missing",
+        );
+        self.soup
+    }
+}
+
+fn local_transform(node: &Node) -> DMat4 {
+    if let Some(matrix) = &node.matrix {
+        return DMat4::from_cols_array(&matrix.map(f64::from));
+    }
+    let vector = |v: [f32; 3]| DVec3::from(v.map(f64::from));
+    let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
+    // A quaternion is stored in 24 bits: made a unit again, the transform keeps lengths.
+    let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
+    DMat4::from_scale_rotation_translation(
+        node.scale.map_or(DVec3::ONE, vector),
+        rotation,
+        node.translation.map_or(DVec3::ZERO, vector),
+    )
+}

@@ -1,0 +1,124 @@
+//! PLY: a header that declares elements and their properties, then the data, as text or binary.
+
+mod header;
+mod rows;
+mod write;
+
+use glam::DVec3;
+
+use self::header::{Element, Header};
+use self::rows::Rows;
+use super::error::{ReadError, ReadProblem};
+use super::soup::{Soup, too_many_vertices};
+use super::{Format, Loaded};
+
+pub(super) use write::{write_ascii, write_binary};
+
+pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
+    let header = Header::read(bytes)?;
+    let vertices = header.element("vertex").ok_or_else(|| {
+        ReadError::line(header.lines, ReadProblem::syntax("an element `vertex` in the header", "none"))
+    })?;
+    let mut rows = Rows::new(bytes, &header);
+    let mut soup = Soup::new();
+    let mut waiting = Vec::new();
+    for (i, element) in header.elements.iter().enumerate() {
+        if i == vertices {
+            read_vertices(element, &mut rows, &mut soup)?;
+        } else if let Some(faces) = Faces::of(element) {
+            // Faces may stand before the vertices they refer to: they are gone back to.
+            if i < vertices {
+                waiting.push((element, faces, rows.clone()));
+                rows.pass_over(element)?;
+            } else {
+                faces.read(element, &mut rows, &mut soup)?;
+            }
+        } else {
+            rows.pass_over(element)?;
+        }
+    }
+    for (element, faces, mut rows) in waiting {
+        faces.read(element, &mut rows, &mut soup)?;
+    }
+    soup.finish(Format::Ply, None)
+}
+
+fn read_vertices(element: &Element, rows: &mut Rows<'_>, soup: &mut Soup) -> Result<(), ReadError> {
+    let axis = |name: &str| {
+        let found = element.properties.iter().position(|p| p.name == name && p.list.is_none());
+        let fail = || ReadProblem::syntax(format!("a property `{name}` of `vertex`"), "none");
+        found.ok_or_else(|| ReadError::line(element.line, fail()))
+    };
+    let axes = [axis("x")?, axis("y")?, axis("z")?];
+    rows.can_hold(element)?;
+    if u32::try_from(element.count).is_err() {
+        return Err(too_many_vertices());
+    }
+    soup.positions.reserve_exact(element.count);
+    for _ in 0..element.count {
+        rows.next(element)?;
+        let p = DVec3::from(axes.map(|axis| rows.scalar(axis)));
+        if !p.is_finite() {
+            return Err(rows.fail(ReadProblem::NotFinite { found: p.to_string() }));
+        }
+        soup.positions.push(p);
+    }
+    Ok(())
+}
+
+/// An element that holds faces.
+#[derive(Debug, Clone, Copy)]
+enum Faces {
+    /// A polygon a row; the property of its corners.
+    Polygons(usize),
+    /// Strips, cut by −1, in one or more rows; the property of their corners.
+    Strips(usize),
+}
+
+impl Faces {
+    fn of(element: &Element) -> Option<Self> {
+        let list = || {
+            let named = |name: &str| element.properties.iter().position(|p| p.name == name && p.list.is_some());
+            named("vertex_indices").or_else(|| named("vertex_index"))
+        };
+        match element.name.as_str() {
+            "face" => list().map(Self::Polygons),
+            "tristrips" => list().map(Self::Strips),
+            _ => None,
+        }
+    }
+
+    fn read(self, element: &Element, rows: &mut Rows<'_>, soup: &mut Soup) -> Result<(), ReadError> {
+        rows.can_hold(element)?;
+        let count = soup.positions.len();
+        if let Self::Polygons(_) = self {
+            soup.triangles.reserve(element.count);
+        }
+        let mut corners = Vec::new();
+        for _ in 0..element.count {
+            rows.next(element)?;
+            let (Self::Polygons(list) | Self::Strips(list)) = self;
+            let values = rows.list(list);
+            match self {
+                Self::Polygons(_) => indices(values, count, &mut corners).map(|()| soup.face(&corners)),
+                Self::Strips(_) => values
+                    .split(|&v| v == -1.0)
+                    .try_for_each(|strip| indices(strip, count, &mut corners).map(|()| soup.strip(&corners))),
+            }
+            .map_err(|problem| rows.fail(problem))?;
+        }
+        Ok(())
+    }
+}
+
+fn indices(values: &[f64], count: usize, corners: &mut Vec<u32>) -> Result<(), ReadProblem> {
+    corners.clear();
+    for &value in values {
+        // Written so that NaN is out of range too.
+        if !(value >= 0.0 && value < count as f64 && value.fract() == 0.0) {
+            return Err(ReadProblem::vertex(value as i64, count));
+        }
+        corners.push(value as u32);
+    }
+    Ok(())
+}

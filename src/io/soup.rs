@@ -1,0 +1,174 @@
+//! What the readers fill: vertices, faces and parts, checked on the way to a [`Loaded`].
+
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+use super::error::{ReadError, ReadProblem};
+use super::polygon;
+use super::{Format, Loaded, Part, Unit};
+use crate::mesh::TriMesh;
+
+/// Bytes of a part's name that are kept.
+const LONGEST_NAME: usize = 256;
+
+/// A mesh while it is read. Faces given to it refer to vertices it already has.
+pub(super) struct Soup {
+    /// Vertices in file order.
+    pub(super) positions: Vec<DVec3>,
+    /// Triangles in file order.
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Sentences about what was read otherwise than it stands.
+    pub(super) warnings: Vec<String>,
+    parts: Vec<Part>,
+    narrow_faces: usize,
+    folded_polygons: usize,
+    allowance: u64,
+}
+
+impl Soup {
+    pub(super) fn new() -> Self {
+        Self {
+            positions: Vec::new(),
+            triangles: Vec::new(),
+            warnings: Vec::new(),
+            parts: Vec::new(),
+            narrow_faces: 0,
+            folded_polygons: 0,
+            allowance: polygon::ALLOWANCE,
+        }
+    }
+
+    /// The triangles from here on belong to a part called `name`.
+    pub(super) fn begin_part(&mut self, name: &[u8]) {
+        self.end_part();
+        let start = self.triangles.len();
+        // Cut, because a name may be repeated for every copy of a part.
+        let name = String::from_utf8_lossy(&name[..name.len().min(LONGEST_NAME)]).trim().to_owned();
+        self.parts.push(Part { name, triangles: start..start });
+    }
+
+    fn end_part(&mut self) {
+        let end = self.triangles.len();
+        match self.parts.last_mut() {
+            Some(part) if part.triangles.start == end => {
+                self.parts.pop();
+            }
+            Some(part) => part.triangles.end = end,
+            None if end > 0 => self.parts.push(Part { name: String::new(), triangles: 0..end }),
+            None => {}
+        }
+    }
+
+    /// Adds a face. Its corners must be in range.
+    #[inline]
+    pub(super) fn face(&mut self, corners: &[u32]) {
+        match *corners {
+            [a, b, c] => self.triangles.push([a, b, c]),
+            [] | [_] | [_, _] => self.narrow_faces += 1,
+            _ => {
+                let whole = polygon::triangulate(&self.positions, corners, &mut self.allowance, &mut self.triangles);
+                self.folded_polygons += usize::from(!whole);
+            }
+        }
+    }
+
+    /// Adds a triangle strip: every second triangle is turned.
+    pub(super) fn strip(&mut self, corners: &[u32]) {
+        self.triangles.extend(
+            corners.windows(3).enumerate().map(
+                |(i, t)| {
+                    if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] }
+                },
+            ),
+        );
+    }
+
+    /// The finished mesh. All corners are in range by now.
+    pub(super) fn finish(mut self, format: Format, unit: Option<Unit>) -> Result<Loaded, ReadError> {
+        if self.triangles.is_empty() {
+            return Err(ReadProblem::NoTriangles.into());
+        }
+        self.end_part();
+        if self.narrow_faces > 0 {
+            self.warnings
+                .push(format!("{} with fewer than three corners left out", counted(self.narrow_faces, "face")));
+        }
+        if self.folded_polygons > 0 {
+            self.warnings.push(format!(
+                "{} too large or tangled to be cut well; cut as fans, which may fold over",
+                counted(self.folded_polygons, "concave polygon")
+            ));
+        }
+        self.positions.shrink_to_fit();
+        self.triangles.shrink_to_fit();
+        let mesh = TriMesh { positions: self.positions, triangles: self.triangles };
+        Ok(Loaded { mesh, format, unit, parts: self.parts, warnings: self.warnings })
+    }
+}
+
+/// `1 face`, `2 faces`, `3 meshes`.
+pub(super) fn counted(count: usize, what: &str) -> String {
+    let ending = match (count, what.ends_with("sh")) {
+        (1, _) => "",
+        (_, true) => "es",
+        (_, false) => "s",
+    };
+    format!("{count} {what}{ending}")
+}
+
+/// Vertices of formats that repeat them for every face, merged where the coordinates are equal
+/// (−0 equals 0) as they come, so that the repeated ones never take memory. The result is that of
+/// [`TriMesh::welded`].
+pub(super) struct Welder {
+    ids: FxHashMap<[u64; 3], u32>,
+}
+
+impl Welder {
+    /// A welder for about `triangles` triangles of a closed mesh.
+    pub(super) fn for_triangles(triangles: usize) -> Self {
+        Self { ids: FxHashMap::with_capacity_and_hasher(triangles / 2 + 2, Default::default()) }
+    }
+
+    /// The number of the vertex at `p`, new or known.
+    #[inline]
+    pub(super) fn vertex(&mut self, p: DVec3, positions: &mut Vec<DVec3>) -> Result<u32, ReadError> {
+        // Adding zero turns −0 into 0.
+        let key = (p + 0.0).to_array().map(f64::to_bits);
+        let next = positions.len();
+        let id = *self.ids.entry(key).or_insert(u32::try_from(next).map_err(|_| too_many_vertices())?);
+        if id as usize == next {
+            positions.push(p);
+        }
+        Ok(id)
+    }
+}
+
+/// The error for more vertices than 32 bits can number.
+pub(super) fn too_many_vertices() -> ReadError {
+    ReadProblem::TooLarge { what: "vertices", limit: u64::from(u32::MAX) }.into()
+}
+
+/// Vertices and triangles that instances (components, nodes) may unfold into.
+pub(super) struct Expansion {
+    left: u64,
+    limit: u64,
+}
+
+impl Expansion {
+    /// The allowance for an input of `bytes` bytes: as many as a file of that length could hold
+    /// without any instance, but at least four million, since a small file with many copies of a
+    /// screw is an honest file.
+    pub(super) fn for_input(bytes: u64) -> Self {
+        let limit = bytes.max(1 << 22);
+        Self { left: limit, limit }
+    }
+
+    /// Takes `count` vertices or triangles from the allowance.
+    pub(super) fn spend(&mut self, count: u64) -> Result<(), ReadProblem> {
+        self.left = self
+            .left
+            .checked_sub(count)
+            .ok_or(ReadProblem::TooLarge { what: "vertices and triangles of instances", limit: self.limit })?;
+        Ok(())
+    }
+}

@@ -1,0 +1,152 @@
+//! ASCII STL: any number of solids, keywords in any case, line breaks anywhere.
+
+use std::io::Write;
+
+use glam::DVec3;
+
+use super::super::error::{ReadError, ReadProblem, WriteError};
+use super::super::soup::{Soup, Welder};
+use super::super::text::{Lines, TextOut, Words, number, quoted};
+use super::normal;
+use crate::mesh::TriMesh;
+
+/// Words across lines.
+struct Stream<'a> {
+    lines: Lines<'a>,
+    words: Words<'a>,
+}
+
+impl<'a> Stream<'a> {
+    fn next(&mut self) -> Option<&'a [u8]> {
+        loop {
+            if let Some(word) = self.words.next() {
+                return Some(word);
+            }
+            self.words = Words::new(self.lines.next()?.1);
+        }
+    }
+
+    fn rest_of_line(&mut self) -> &'a [u8] {
+        std::mem::replace(&mut self.words, Words::new(b"")).rest()
+    }
+
+    fn fail(&self, problem: ReadProblem) -> ReadError {
+        ReadError::line(self.lines.number(), problem)
+    }
+
+    /// The next word; the end of the file is an error that says what was `expected`.
+    fn word(&mut self, expected: &str) -> Result<&'a [u8], ReadError> {
+        let word = self.next();
+        word.ok_or_else(|| self.fail(ReadProblem::truncated(expected, "the file ends within a facet")))
+    }
+
+    fn keyword(&mut self, keyword: &str) -> Result<(), ReadError> {
+        let expected = format!("`{keyword}`");
+        let word = self.word(&expected)?;
+        if is(word, keyword) { Ok(()) } else { Err(self.fail(ReadProblem::syntax(expected, quoted(word)))) }
+    }
+
+    fn point(&mut self) -> Result<DVec3, ReadError> {
+        let mut p = DVec3::ZERO;
+        for k in 0..3 {
+            let word = self.word("a coordinate")?;
+            p[k] = number(word).ok_or_else(|| self.fail(ReadProblem::syntax("a coordinate", quoted(word))))?;
+            if !p[k].is_finite() {
+                return Err(self.fail(ReadProblem::NotFinite { found: quoted(word) }));
+            }
+        }
+        Ok(p)
+    }
+
+    /// What follows the word `facet`: the normal is passed over, whatever it is written as.
+    fn facet(&mut self, corners: &mut Vec<DVec3>) -> Result<(), ReadError> {
+        corners.clear();
+        // `normal` and three numbers, at most.
+        for _ in 0..5 {
+            let word = self.word("`outer loop`")?;
+            if is(word, "outer") {
+                break;
+            }
+            if is(word, "vertex") || is(word, "endfacet") {
+                return Err(self.fail(ReadProblem::syntax("`outer loop`", quoted(word))));
+            }
+        }
+        self.keyword("loop")?;
+        loop {
+            let word = self.word("`vertex` or `endloop`")?;
+            if is(word, "endloop") {
+                break;
+            }
+            if !is(word, "vertex") {
+                return Err(self.fail(ReadProblem::syntax("`vertex` or `endloop`", quoted(word))));
+            }
+            corners.push(self.point()?);
+        }
+        if corners.len() < 3 {
+            return Err(self.fail(ReadProblem::syntax("three vertices in a loop", corners.len().to_string())));
+        }
+        self.keyword("endfacet")
+    }
+}
+
+fn is(word: &[u8], keyword: &str) -> bool {
+    word.eq_ignore_ascii_case(keyword.as_bytes())
+}
+
+pub(super) fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
+    let mut stream = Stream { lines: Lines::new(bytes), words: Words::new(b"") };
+    let mut soup = Soup::new();
+    // About 250 bytes a facet in files as they are.
+    let mut welder = Welder::for_triangles(bytes.len() / 250);
+    let (mut corners, mut face) = (Vec::new(), Vec::new());
+    let mut open = false;
+    while let Some(word) = stream.next() {
+        if is(word, "facet") {
+            stream.facet(&mut corners)?;
+            face.clear();
+            for &p in &corners {
+                face.push(welder.vertex(p, &mut soup.positions)?);
+            }
+            soup.face(&face);
+        } else if is(word, "solid") {
+            soup.begin_part(stream.rest_of_line());
+            open = true;
+        } else if is(word, "endsolid") {
+            stream.rest_of_line();
+            open = false;
+        } else {
+            return Err(stream.fail(ReadProblem::syntax("`facet`, `solid` or `endsolid`", quoted(word))));
+        }
+    }
+    if open {
+        soup.warnings.push("no `endsolid` at the end: facets may be missing".into());
+    }
+    Ok(soup)
+}
+
+/// Writes one solid.
+pub(in crate::io) fn write(mesh: &TriMesh, out: &mut dyn Write) -> Result<(), WriteError> {
+    let mut text = TextOut::new(out);
+    text.text("solid meshwright\n");
+    for triangle in 0..mesh.triangles.len() {
+        text.text("facet normal");
+        // Nothing is computed from a normal, so it is written as short as an `f32` can be.
+        for x in normal(mesh, triangle).as_vec3().to_array() {
+            text.text(" ");
+            text.short_number(x);
+        }
+        text.text("\nouter loop\n");
+        for corner in mesh.corners(triangle) {
+            text.text("vertex");
+            for x in corner.as_vec3().to_array() {
+                text.text(" ");
+                text.number(f64::from(x));
+            }
+            text.text("\n");
+        }
+        text.text("endloop\nendfacet\n");
+        text.pass_on()?;
+    }
+    text.text("endsolid meshwright\n");
+    Ok(text.finish()?)
+}

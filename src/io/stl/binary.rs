@@ -1,0 +1,122 @@
+//! Binary STL: 80 bytes of anything, a count, then 50 bytes a facet.
+
+use std::io::Write;
+
+use glam::{DVec3, Vec3};
+
+use super::super::error::{Place, ReadError, ReadProblem, WriteError, WriteProblem};
+use super::super::soup::{Soup, Welder, counted};
+use super::normal;
+use crate::io::Format;
+use crate::mesh::TriMesh;
+
+const HEADER: usize = 80;
+/// Header and count.
+pub(super) const PREFIX: usize = HEADER + 4;
+const FACET: usize = 50;
+
+fn count(bytes: &[u8]) -> Option<usize> {
+    let field = bytes.get(HEADER..PREFIX)?;
+    Some(u32::from_le_bytes(field.try_into().ok()?) as usize)
+}
+
+/// Whether the length is exactly what the count says, for at least one facet.
+pub(in crate::io) fn is_exact(bytes: &[u8]) -> bool {
+    count(bytes).is_some_and(|n| n > 0 && n.checked_mul(FACET).is_some_and(|body| bytes.len() - PREFIX == body))
+}
+
+/// Whether the length is that of whole facets, at least as many as the count says.
+pub(in crate::io) fn looks_like(bytes: &[u8]) -> bool {
+    count(bytes).is_some_and(|n| {
+        let body = bytes.len() - PREFIX;
+        body > 0 && body % FACET == 0 && n <= body / FACET
+    })
+}
+
+/// How many facets to read. A count above what is there means a file cut short. A count below
+/// it is believed when the rest is not whole facets, and is otherwise taken as never filled in.
+fn facets_to_read(bytes: &[u8], soup: &mut Soup) -> Result<usize, ReadError> {
+    let truncated = |expected: String| {
+        let found = format!("the file ends after {} bytes", bytes.len());
+        ReadError::byte(bytes.len(), ReadProblem::truncated(expected, found))
+    };
+    let Some(stated) = count(bytes) else {
+        return Err(truncated("84 bytes of header and count".into()));
+    };
+    let body = bytes.len() - PREFIX;
+    let (present, left_over) = (body / FACET, body % FACET);
+    if stated > present {
+        return Err(truncated(format!("{} of 50 bytes (bytes 80 to 83 say so)", counted(stated, "facet"))));
+    }
+    if stated == present {
+        if left_over > 0 {
+            soup.warnings.push(format!("{} after the last facet left out", counted(left_over, "byte")));
+        }
+        return Ok(stated);
+    }
+    if left_over == 0 {
+        soup.warnings
+            .push(format!("the header counts {} but {present} are there; all are read", counted(stated, "facet")));
+        return Ok(present);
+    }
+    if stated == 0 {
+        return Err(truncated(format!("a whole facet {} of 50 bytes", present + 1)));
+    }
+    let extra = body - stated * FACET;
+    soup.warnings.push(format!("{} after the last of {stated} facets left out", counted(extra, "byte")));
+    Ok(stated)
+}
+
+pub(super) fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
+    let mut soup = Soup::new();
+    let facets = facets_to_read(bytes, &mut soup)?;
+    let mut welder = Welder::for_triangles(facets);
+    soup.triangles.reserve_exact(facets);
+    for (i, facet) in bytes[PREFIX..].chunks_exact(FACET).take(facets).enumerate() {
+        let mut corners = [0; 3];
+        // The normal, 12 bytes, is recomputed by whoever needs it.
+        for (k, corner) in corners.iter_mut().enumerate() {
+            let place = 12 + 12 * k;
+            let p = point(&facet[place..place + 12]);
+            if !p.is_finite() {
+                let byte = (PREFIX + i * FACET + place) as u64;
+                return Err(ReadError::at(Place::Byte(byte), ReadProblem::NotFinite { found: p.to_string() }));
+            }
+            *corner = welder.vertex(p, &mut soup.positions)?;
+        }
+        soup.triangles.push(corners);
+    }
+    Ok(soup)
+}
+
+fn point(bytes: &[u8]) -> DVec3 {
+    let mut p = Vec3::ZERO;
+    for (k, field) in bytes.chunks_exact(4).take(3).enumerate() {
+        p[k] = f32::from_le_bytes([field[0], field[1], field[2], field[3]]);
+    }
+    p.as_dvec3()
+}
+
+/// Writes the facets with recomputed normals.
+pub(in crate::io) fn write(mesh: &TriMesh, out: &mut dyn Write) -> Result<(), WriteError> {
+    let count = u32::try_from(mesh.triangles.len()).map_err(|_| WriteProblem::TooLarge { format: Format::Stl })?;
+    let mut header = [b' '; HEADER];
+    let title = b"binary STL by meshwright";
+    header[..title.len()].copy_from_slice(title);
+    out.write_all(&header)?;
+    out.write_all(&count.to_le_bytes())?;
+    let mut chunk = Vec::with_capacity(1024 * FACET);
+    for triangle in 0..mesh.triangles.len() {
+        for p in [normal(mesh, triangle)].into_iter().chain(mesh.corners(triangle)) {
+            for x in p.as_vec3().to_array() {
+                chunk.extend_from_slice(&x.to_le_bytes());
+            }
+        }
+        chunk.extend_from_slice(&[0, 0]);
+        if chunk.len() >= 1024 * FACET {
+            out.write_all(&chunk)?;
+            chunk.clear();
+        }
+    }
+    Ok(out.write_all(&chunk)?)
+}

@@ -1,0 +1,173 @@
+//! The zip package: finding the models in it, and unpacking no more than the file justifies.
+
+use std::io::{self, BufReader, Cursor, Read};
+
+use quick_xml::events::Event;
+use zip::ZipArchive;
+use zip::result::ZipError;
+
+use super::super::error::{Place, ReadError, ReadProblem};
+use super::model::{self, Model};
+
+/// Unpacked bytes that any package may have.
+const ALWAYS_ALLOWED: u64 = 64 << 20;
+/// Beyond that, unpacked bytes for each byte of the package. Model files of real meshes shrink to
+/// a sixth, very regular ones to a thirtieth; deflate can do a thousandth.
+const LARGEST_RATIO: u64 = 100;
+
+pub(super) struct Package<'a> {
+    archive: ZipArchive<Cursor<&'a [u8]>>,
+    left: u64,
+    limit: u64,
+}
+
+impl<'a> Package<'a> {
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, ReadError> {
+        let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| zip_problem(e, "a zip package"))?;
+        let limit = ALWAYS_ALLOWED.max((bytes.len() as u64).saturating_mul(LARGEST_RATIO));
+        Ok(Self { archive, left: limit, limit })
+    }
+
+    /// Bytes unpacked so far.
+    pub(super) fn bytes_read(&self) -> u64 {
+        self.limit - self.left
+    }
+
+    /// The name of the model where the build is: the one that the package's relationships name,
+    /// else the usual one, else any.
+    pub(super) fn root_model(&mut self) -> Result<String, ReadError> {
+        let named = match self.find("_rels/.rels") {
+            Some(index) => self.unpack(index, "_rels/.rels", |reader| root_target(reader))?,
+            None => None,
+        };
+        let usual = || self.find("3D/3dmodel.model").and_then(|i| self.archive.name_for_index(i));
+        let any = || self.archive.file_names().filter(|name| name.ends_with(".model")).min();
+        named
+            .filter(|name| self.find(name).is_some())
+            .or_else(|| usual().or_else(any).map(str::to_owned))
+            .ok_or_else(|| ReadError::item("package", ReadProblem::syntax("a 3D model (3D/3dmodel.model)", "none")))
+    }
+
+    pub(super) fn read_model(&mut self, name: &str) -> Result<Model, ReadError> {
+        let none = || ReadError::item("package", ReadProblem::syntax(format!("the model {name}"), "none"));
+        let index = self.find(name).ok_or_else(none)?;
+        self.unpack(index, name, |reader| model::parse(reader, name))
+    }
+
+    /// Names of a package start with a slash in references and without in the archive, and do not
+    /// differ by case alone.
+    fn find(&self, name: &str) -> Option<usize> {
+        let name = name.trim_start_matches('/');
+        self.archive.index_for_name(name).or_else(|| {
+            (0..self.archive.len())
+                .find(|&i| self.archive.name_for_index(i).is_some_and(|n| n.eq_ignore_ascii_case(name)))
+        })
+    }
+
+    fn unpack<T>(
+        &mut self,
+        index: usize,
+        name: &str,
+        parse: impl FnOnce(&mut Xml<'_>) -> Result<T, XmlError>,
+    ) -> Result<T, ReadError> {
+        let limit = self.limit;
+        let file = self.archive.by_index(index).map_err(|e| zip_problem(e, name))?;
+        let capped = Capped { inner: file, left: &mut self.left };
+        let mut xml = quick_xml::Reader::from_reader(BufReader::new(Box::new(capped) as Box<dyn Read>));
+        xml.config_mut().expand_empty_elements = true;
+        let mut xml = Xml { reader: xml, buffer: Vec::new() };
+        parse(&mut xml).map_err(|error| {
+            let byte = xml.reader.buffer_position();
+            let problem = match error {
+                XmlError::Problem(problem) => problem,
+                XmlError::Xml(error) => xml_problem(error, limit),
+            };
+            ReadError::at(Place::Part { name: name.to_owned(), byte }, problem)
+        })
+    }
+}
+
+/// An XML file being read, event by event.
+pub(super) struct Xml<'a> {
+    reader: quick_xml::Reader<BufReader<Box<dyn Read + 'a>>>,
+    buffer: Vec<u8>,
+}
+
+impl Xml<'_> {
+    /// The next event.
+    pub(super) fn event(&mut self) -> Result<Event<'_>, XmlError> {
+        self.buffer.clear();
+        Ok(self.reader.read_event_into(&mut self.buffer)?)
+    }
+}
+
+/// What goes wrong within an XML file.
+pub(super) enum XmlError {
+    Problem(ReadProblem),
+    Xml(quick_xml::Error),
+}
+
+impl From<quick_xml::Error> for XmlError {
+    fn from(error: quick_xml::Error) -> Self {
+        Self::Xml(error)
+    }
+}
+
+impl From<ReadProblem> for XmlError {
+    fn from(problem: ReadProblem) -> Self {
+        Self::Problem(problem)
+    }
+}
+
+/// Ends with an error instead of handing out more than `left` bytes.
+struct Capped<'a, R> {
+    inner: R,
+    left: &'a mut u64,
+}
+
+#[derive(Debug, thiserror::Error)]
+#[error("unpacks to too much")]
+struct Burst;
+
+impl<R: Read> Read for Capped<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        *self.left = self.left.checked_sub(count as u64).ok_or_else(|| io::Error::other(Burst))?;
+        Ok(count)
+    }
+}
+
+fn xml_problem(error: quick_xml::Error, limit: u64) -> ReadProblem {
+    match &error {
+        quick_xml::Error::Io(io) if io.get_ref().is_some_and(|inner| inner.is::<Burst>()) => {
+            ReadProblem::TooLarge { what: "unpacked bytes", limit }
+        }
+        _ => ReadProblem::syntax("sound XML", error.to_string()),
+    }
+}
+
+fn zip_problem(error: ZipError, what: &str) -> ReadError {
+    let problem = match error {
+        ZipError::UnsupportedArchive(why) => ReadProblem::Unsupported(format!("the zip package cannot be read: {why}")),
+        other => ReadProblem::syntax("a sound zip package", other.to_string()),
+    };
+    ReadError::item(what, problem)
+}
+
+/// The target of the first relationship to a 3D model.
+fn root_target(xml: &mut Xml<'_>) -> Result<Option<String>, XmlError> {
+    loop {
+        match xml.event()? {
+            Event::Eof => return Ok(None),
+            Event::Start(element) if element.local_name().as_ref() == b"Relationship" => {
+                let kind = model::attribute(&element, b"Type").unwrap_or_default();
+                if kind.trim_ascii_end().ends_with(b"/3dmodel")
+                    && let Some(target) = model::attribute(&element, b"Target")
+                {
+                    return Ok(Some(model::text(&target)));
+                }
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! Files in and out: every real mesh reads, every format round-trips, and no file, however
+//! hostile, does more than return an error.
+
+#[path = "io/formats.rs"]
+mod formats;
+#[path = "io/hostile.rs"]
+mod hostile;
+#[path = "io/mutants.rs"]
+mod mutants;
+#[path = "io/real.rs"]
+mod real;
+#[path = "io/round_trip.rs"]
+mod round_trip;
+#[path = "io/saving.rs"]
+mod saving;
+#[path = "io/support.rs"]
+mod support;
