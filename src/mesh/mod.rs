@@ -1,5 +1,22 @@
 //! Triangle meshes: the soup as read, its defects, its measures, and the topology of manifolds.
+//!
+//! [`TriMesh`] assumes nothing. [`validate`] counts what is wrong with one and measures it,
+//! [`defects`] says where, and both judge intersections by exact predicates. [`HalfEdges`] is the topology of
+//! a closed, oriented manifold while it is edited.
 
+mod defects;
+mod edges;
+mod half_edges;
+mod predicates;
+mod self_intersection;
 mod tri_mesh;
+mod triangle_pair;
+mod validity;
+mod weld;
 
+pub use defects::{Defects, defects};
+pub use half_edges::{Compacted, HalfEdges, NotManifold, Ring};
+pub use self_intersection::{intersecting_triangles, self_intersections};
 pub use tri_mesh::{Bounds, TriMesh};
+pub use triangle_pair::triangles_intersect;
+pub use validity::{ValidateOptions, Validity, validate};
