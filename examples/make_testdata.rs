@@ -192,7 +192,8 @@ fn broken_mug() -> Vec<(&'static str, TriMesh)> {
         let (out, up) = (bow.cos(), bow.sin());
         let thickness = 4.5 + 1.2 * (TAU * u).cos();
         let (side, lift) = ((TAU * v).cos() * thickness, (TAU * v).sin() * thickness * 1.15);
-        let along = 24.0 * out + 42.2 + lift * out;
+        // Both ends lie between the outside and the inside of the wall, which leans outwards.
+        let along = 24.0 * out + 41.3 + up + lift * out;
         dvec3(along, side, 48.0 + 30.0 * up + lift * up)
     });
     remove_near(&mut handle, dvec3(70.0, -4.0, 58.0), 3.5);
