@@ -21,12 +21,15 @@ pub enum Slot {
     Outside,
 }
 
-/// Which bricks are active, in a fixed order, and the class of the uniform ones beside them.
-/// Brick `b` holds the voxels `8 b .. 8 b + 8`. Bricks that were never inserted are outside.
+/// Which bricks are active, in a fixed order, and the class of the others. Brick `b` holds the
+/// voxels `8 b .. 8 b + 8`. An inactive brick has the class that was set for it, else the class
+/// that follows the last active brick before it along x, else it is outside.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Bricks {
     active: Vec<IVec3>,
     slots: FxHashMap<IVec3, Slot>,
+    /// For each active brick, whether inactive bricks that follow it along x are inside.
+    inside_after: Vec<bool>,
 }
 
 /// Brick that holds `voxel`.
@@ -41,14 +44,27 @@ pub fn index_in_brick(voxel: IVec3) -> usize {
     ((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6) as usize
 }
 
+/// The order of active bricks.
+#[inline]
+fn order(brick: &IVec3) -> (i32, i32, i32) {
+    (brick.z, brick.y, brick.x)
+}
+
 impl Bricks {
-    /// The given active bricks, sorted by (z, y, x) and without repetition, and no others.
+    /// The given active bricks, sorted by (z, y, x) and without repetition; all others outside.
     pub fn new(active: impl IntoIterator<Item = IVec3>) -> Self {
+        Self::with_classes(active, |_| false)
+    }
+
+    /// The given active bricks, sorted by (z, y, x) and without repetition. `inside_after` says of
+    /// an active brick whether the inactive bricks that follow it along x are inside.
+    pub fn with_classes(active: impl IntoIterator<Item = IVec3>, inside_after: impl Fn(IVec3) -> bool) -> Self {
         let mut active: Vec<IVec3> = active.into_iter().collect();
-        active.sort_unstable_by_key(|b| (b.z, b.y, b.x));
+        active.sort_unstable_by_key(order);
         active.dedup();
         let slots = active.iter().enumerate().map(|(n, &b)| (b, Slot::Active(n as u32))).collect();
-        Self { active, slots }
+        let inside_after = active.iter().map(|&b| inside_after(b)).collect();
+        Self { active, slots, inside_after }
     }
 
     /// Says that the inactive brick `brick` lies inside; no effect on an active one.
@@ -59,7 +75,15 @@ impl Bricks {
     /// What is known of brick `brick`.
     #[inline]
     pub fn slot(&self, brick: IVec3) -> Slot {
-        self.slots.get(&brick).copied().unwrap_or(Slot::Outside)
+        self.slots.get(&brick).copied().unwrap_or_else(|| self.inactive_slot(brick))
+    }
+
+    fn inactive_slot(&self, brick: IVec3) -> Slot {
+        let before = self.active.partition_point(|b| order(b) < order(&brick));
+        let inside = before
+            .checked_sub(1)
+            .is_some_and(|n| self.inside_after[n] && self.active[n].z == brick.z && self.active[n].y == brick.y);
+        if inside { Slot::Inside } else { Slot::Outside }
     }
 
     /// Coordinates of the active bricks, sorted by (z, y, x).

@@ -1,8 +1,11 @@
 //! The lattice: where the voxels lie, which bricks of them are stored, and the 13 directions.
 
 mod bricks;
+mod directions;
+mod sizing;
 
 pub use bricks::{BRICK, BRICK_VOXELS, Bricks, Grid, Slot, brick_of, index_in_brick};
+pub use directions::{DIRECTIONS, Direction};
 
 use glam::{DVec3, IVec3};
 

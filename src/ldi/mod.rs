@@ -1,5 +1,33 @@
-//! Layered depth images: every crossing of the lattice's own rays with the soup, in 13 directions.
+//! Layered depth images: every crossing of the lattice's own rays with the soup, in 13 directions
+//! (Bærentzen §3), and the spans of the result along them (§3.1, §5.1).
 
+mod crossings;
 mod expression;
+mod layers;
+mod raster;
+mod spans;
+mod thin;
 
+pub use crossings::edge_crossing;
 pub use expression::Expression;
+pub use layers::{Hit, Layers, MAX_TRIANGLES};
+pub use raster::{MAX_VOXELS, SNAP_BITS, rasterise, snap};
+pub(crate) use spans::balanced_alone;
+pub use spans::{Balance, Operands, Spans, TIE, balance, spans};
+pub use thin::{Lengths, THIN, lengths};
+
+use rayon::prelude::*;
+
+use crate::lattice::{DIRECTIONS, Lattice};
+use crate::mesh::TriMesh;
+use crate::progress::{Progress, Stopped};
+
+/// The LDIs of `soup` in all 13 directions, `factor` (1 or 2) rays per voxel along each axis.
+/// Triangles outside the lattice are cut to its rays.
+pub fn ldis(soup: &TriMesh, lattice: &Lattice, factor: u32, progress: &Progress) -> Result<Vec<Layers>, Stopped> {
+    let vertices = snap(&soup.positions, lattice);
+    DIRECTIONS
+        .par_iter()
+        .map(|&direction| rasterise(&vertices, &soup.triangles, lattice.dims, direction, factor, progress))
+        .collect()
+}

@@ -7,6 +7,7 @@
 mod defects;
 mod edges;
 mod half_edges;
+mod plane;
 mod predicates;
 mod self_intersection;
 mod tri_mesh;
@@ -16,6 +17,7 @@ mod weld;
 
 pub use defects::{Defects, defects};
 pub use half_edges::{Compacted, HalfEdges, NotManifold, Ring};
+pub use plane::Plane;
 pub use self_intersection::{intersecting_triangles, self_intersections};
 pub use tri_mesh::{Bounds, TriMesh};
 pub use triangle_pair::triangles_intersect;

@@ -1,4 +1,14 @@
-//! Cleaning and orientation of the soup.
+//! Cleaning and orientation of the soup: exact repetitions go, each edge-connected patch becomes
+//! consistent, and the rays of the LDIs decide which of its sides is outside.
+
+mod clean;
+mod edges;
+mod patches;
+mod sides;
+
+pub use clean::{Cleaned, clean};
+pub use patches::{Patches, orient_patches};
+pub use sides::orient_sides;
 
 use serde::Serialize;
 

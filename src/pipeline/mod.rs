@@ -1,15 +1,24 @@
 //! The pipelines: short functions that read like the drawing in the crate's documentation.
 
+mod plan;
+mod prepare;
 mod report;
+mod solid;
+mod stages;
 
+pub use plan::plan;
 pub use report::{LdiReport, Report, StageTime, ThinReport};
 
+use rayon::prelude::*;
+
+use crate::contour::{ContourOptions, contour};
 use crate::lattice::Lattice;
-use crate::ldi::Expression;
+use crate::ldi::{Expression, Spans, ldis, spans};
 use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
 use crate::progress::{Progress, Stopped};
-use crate::vote::VoteRule;
+use crate::sdf::{self, RobustOptions};
+use crate::vote::{Jury, VoteRule, vote_near_surface};
 
 /// The voxel size of a pipeline. There is no default: it decides what is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,8 +38,8 @@ pub struct Options {
     pub orient: OrientMode,
     /// Voting rule.
     pub rule: VoteRule,
-    /// Rays per voxel along each axis of an LDI (1 or 2); the contour needs no more than 1.
-    pub supersampling: u32,
+    /// The distance field near the surface.
+    pub robust: RobustOptions,
     /// Whether edges that join two faces of one voxel's cube are collapsed after contouring.
     pub collapse: bool,
     /// Upper bound for the working memory, bytes; `None`: no bound.
@@ -44,7 +53,7 @@ impl Options {
             voxel,
             orient: OrientMode::Auto,
             rule: VoteRule::default(),
-            supersampling: 1,
+            robust: RobustOptions::default(),
             collapse: true,
             max_memory: None,
         }
@@ -104,14 +113,14 @@ pub enum Error {
         reason: String,
     },
     /// More memory would be needed than allowed.
-    #[error("about {needed} bytes would be needed and {allowed} are allowed; a voxel of {voxel_that_fits} would fit")]
+    #[error("about {} MB would be needed and {} MB are allowed{}", needed / 1_000_000, allowed / 1_000_000, fits(voxel_that_fits))]
     Memory {
         /// Estimated peak, bytes.
         needed: u64,
         /// The cap, bytes.
         allowed: u64,
-        /// A voxel size that fits, model units.
-        voxel_that_fits: f64,
+        /// A voxel size that fits, model units; `None` when no size does.
+        voxel_that_fits: Option<f64>,
     },
     /// The expression names an operand that was not given.
     #[error("the expression names operand {operand}, but only {given} were given")]
@@ -123,10 +132,8 @@ pub enum Error {
     },
 }
 
-/// What [`boolean`] (and [`repair`]: one operand) would cost.
-pub fn plan(operands: &[TriMesh], options: &Options) -> Result<Plan, Error> {
-    let _ = (operands, options);
-    Err(Error::Empty { operand: 0 })
+fn fits(voxel: &Option<f64>) -> String {
+    voxel.map_or_else(|| "; no voxel size would fit".into(), |h| format!("; a voxel of {h:.4} would fit"))
 }
 
 /// Repairs one soup: all its shells are one operand.
@@ -141,6 +148,40 @@ pub fn boolean(
     options: &Options,
     progress: &Progress,
 ) -> Result<Outcome, Error> {
-    let _ = (operands, expression, options, progress);
-    Err(Error::Empty { operand: 0 })
+    let needed = expression.operand_count();
+    if needed > operands.len() {
+        return Err(Error::MissingOperand { operand: needed - 1, given: operands.len() });
+    }
+    let lattice = prepare::lattice(&prepare::bounds(operands)?, options.voxel)?;
+    plan::check_memory(operands, &lattice, options)?;
+    let mut stages = stages::Stages::new(progress);
+
+    stages.begin("orient")?;
+    let mut soup = prepare::prepare(operands, options.orient)?;
+    stages.begin("ldi")?;
+    let mut layers = ldis(&soup.mesh, &lattice, 1, progress)?;
+    soup.turn_patches(&mut layers, options.orient);
+    let hits = solid::count(&layers);
+    stages.begin("spans")?;
+    let spans: Vec<Spans> = layers.into_par_iter().map(|layers| spans(layers, &soup.operands, expression)).collect();
+    stages.begin("vote")?;
+    let jury = Jury { spans: &spans, operands: &soup.operands, expression, rule: options.rule };
+    let votes = vote_near_surface(&jury, progress)?;
+    stages.begin("sdf")?;
+    let distance = sdf::robust(&spans, &soup.planes(&lattice), &votes, &options.robust);
+    stages.begin("contour")?;
+    let crossing = solid::crossings(&spans, &distance);
+    let mut surface = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;
+    if surface.mesh.triangles.is_empty() {
+        return Err(Error::NothingEnclosed { reason: solid::why_nothing(&spans, &lattice, hits, operands.len()) });
+    }
+    if options.collapse {
+        stages.begin("collapse")?;
+        surface = solid::collapse(surface, &soup, &lattice, progress)?;
+    }
+
+    let mut report = solid::report(&lattice, &spans, hits, &votes);
+    report.orient = soup.reports;
+    report.stages = stages.finish();
+    Ok(Outcome { mesh: surface.mesh, lattice, report })
 }

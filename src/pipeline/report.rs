@@ -46,11 +46,13 @@ pub struct ThinReport {
     pub spans: usize,
     /// Of these, spans shorter than 2 h: walls too thin for the voxel size.
     pub thin_spans: usize,
+    /// Spans that hold no voxel: a ray alone would lose them.
+    pub lost_spans: usize,
     /// Gaps between spans shorter than 2 h.
     pub thin_gaps: usize,
     /// The 1st percentile of the span lengths, model units.
     pub thinnest: Option<f64>,
-    /// A voxel size, model units, that would hold 99 % of the spans.
+    /// A voxel size, model units, that would hold 99 % of the spans; `None` when all are held.
     pub voxel_that_keeps: Option<f64>,
 }
 

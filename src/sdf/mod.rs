@@ -1,1 +1,46 @@
-//! (being built)
+//! Signed distance near the surface, in h, negative inside.
+//!
+//! The *robust* field (Bærentzen §3.3–3.4): the voted volume, estimates from the LDI points,
+//! smoothing, gradient correction, and fast marching to a wanted band.
+
+mod correct;
+mod estimate;
+mod march;
+mod neighbours;
+mod smooth;
+
+pub use correct::correct;
+pub use estimate::estimate;
+pub use march::march;
+pub use smooth::{FAR, smooth};
+
+use crate::lattice::Grid;
+use crate::ldi::Spans;
+use crate::mesh::Plane;
+use crate::vote::Votes;
+
+/// The robust field in the active bricks of `votes`: right near the surface, ±√3 elsewhere.
+/// `planes` are those of the soup's triangles, in lattice coordinates.
+pub fn robust(spans: &[Spans], planes: &[Plane], votes: &Grid<Votes>, options: &RobustOptions) -> Grid<f32> {
+    let estimates = estimate(spans, planes, &votes.bricks);
+    correct(smooth(votes, &estimates, options), options)
+}
+
+/// Options of the robust field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RobustOptions {
+    /// Rounds of smoothing; the paper's 15.
+    pub smoothing_rounds: u32,
+    /// Rounds of gradient correction; the paper's 10.
+    pub correction_rounds: u32,
+    /// Damping of the correction, 0 to 1; the paper's 0.5.
+    pub damping: f32,
+    /// Whether voxels the vote is sure of keep their side.
+    pub trust_votes: bool,
+}
+
+impl Default for RobustOptions {
+    fn default() -> Self {
+        Self { smoothing_rounds: 15, correction_rounds: 10, damping: 0.5, trust_votes: true }
+    }
+}

@@ -1,4 +1,13 @@
-//! From spans to solid voxels: the 13 directions vote (Bærentzen §3.2).
+//! From spans to solid voxels: the 13 directions vote (Bærentzen §3.2), brick by brick, near the
+//! surface only.
+
+mod doubt;
+mod grow;
+mod tally;
+
+pub use doubt::doubts;
+pub use grow::vote_near_surface;
+pub use tally::{FEW, Jury, Votes, voxel_in_brick};
 
 use serde::Serialize;
 

@@ -1,0 +1,90 @@
+//! Which side of a patch is outside: the rays of the LDIs vote.
+
+use rayon::prelude::*;
+
+use crate::ldi::{Hit, Layers, Operands, balanced_alone};
+
+/// At most this many rounds of voting: each turns over the patches that the rays vote against,
+/// and the next sees the effect. Two settle every file tried.
+const ROUNDS: usize = 4;
+
+/// Votes of the rays on one patch.
+#[derive(Debug, Clone, Copy, Default)]
+struct Ballot {
+    keep: u32,
+    flip: u32,
+}
+
+/// Decides for each patch whether it has to be turned over, and turns the crossings of the turned
+/// patches in `layers`. `patch_of` maps triangles of the common soup to patches.
+///
+/// Each ray looks at each operand's crossings by themselves. Where they balance as they are, every
+/// crossing votes to keep its patch: overlapping bodies and voids in hollow ones are fine. Where
+/// they do not, but are even in number, enter, leave, enter, leave… is expected, and each crossing
+/// votes for what that says of it. An odd number of crossings has no say.
+pub fn orient_sides(layers: &mut [Layers], patch_of: &[u32], patch_count: usize, operands: &Operands) -> Vec<bool> {
+    let mut turned = vec![false; patch_count];
+    for _ in 0..ROUNDS {
+        let ballots = layers
+            .par_iter()
+            .map(|layers| poll(layers, patch_of, patch_count, operands))
+            .reduce(|| vec![Ballot::default(); patch_count], add);
+        let flip: Vec<bool> = ballots.iter().map(|ballot| ballot.flip > ballot.keep).collect();
+        if !flip.contains(&true) {
+            break;
+        }
+        turned.iter_mut().zip(&flip).for_each(|(turned, &flip)| *turned ^= flip);
+        layers.par_iter_mut().for_each(|layers| {
+            for hit in &mut layers.hits {
+                if flip[patch_of[hit.triangle() as usize] as usize] {
+                    *hit = hit.turned();
+                }
+            }
+        });
+    }
+    turned
+}
+
+fn add(mut a: Vec<Ballot>, b: Vec<Ballot>) -> Vec<Ballot> {
+    for (a, b) in a.iter_mut().zip(b) {
+        a.keep += b.keep;
+        a.flip += b.flip;
+    }
+    a
+}
+
+fn poll(layers: &Layers, patch_of: &[u32], patch_count: usize, operands: &Operands) -> Vec<Ballot> {
+    let mut ballots = vec![Ballot::default(); patch_count];
+    let mut own = Vec::new();
+    for hits in layers.offsets.windows(2).map(|w| &layers.hits[w[0] as usize..w[1] as usize]) {
+        if hits.is_empty() {
+            continue;
+        }
+        if operands.count() == 1 {
+            vote(hits, patch_of, &mut ballots);
+            continue;
+        }
+        for operand in 0..operands.count() {
+            own.clear();
+            own.extend(hits.iter().filter(|hit| operands.of(hit.triangle()) == operand));
+            vote(&own, patch_of, &mut ballots);
+        }
+    }
+    ballots
+}
+
+/// Adds the votes of one operand's crossings on one ray.
+fn vote(hits: &[Hit], patch_of: &[u32], ballots: &mut [Ballot]) {
+    if hits.len() % 2 == 1 {
+        return;
+    }
+    let balanced = balanced_alone(hits);
+    for (n, hit) in hits.iter().enumerate() {
+        let ballot = &mut ballots[patch_of[hit.triangle() as usize] as usize];
+        if balanced || hit.entering() == (n % 2 == 0) {
+            ballot.keep += 1;
+        } else {
+            ballot.flip += 1;
+        }
+    }
+}

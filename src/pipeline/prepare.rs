@@ -1,0 +1,132 @@
+//! From operands to a common soup on a lattice.
+
+use rayon::prelude::*;
+
+use super::{Error, VoxelSize};
+use crate::lattice::Lattice;
+use crate::ldi::{Layers, MAX_VOXELS, Operands};
+use crate::mesh::{Bounds, Plane, TriMesh};
+use crate::orient::{OrientMode, OrientReport, clean, orient_patches, orient_sides};
+
+/// Coordinates beyond this cannot be meant, in any unit: 10¹⁵ of them squared still fit an `f32`.
+const LARGEST_COORDINATE: f64 = 1e15;
+/// The voxel size must be this many times the spacing of `f32` numbers at the farthest coordinate.
+const F32_STEPS: f64 = 64.0;
+
+/// The operands, cleaned, made consistent, and put one after another.
+pub(super) struct Soup {
+    pub mesh: TriMesh,
+    pub operands: Operands,
+    /// Patch of each triangle; patches are numbered through all operands.
+    pub patch_of: Vec<u32>,
+    pub patch_count: usize,
+    pub reports: Vec<OrientReport>,
+}
+
+impl Soup {
+    /// Lets the rays decide the side of each patch, and turns patches over in the crossings and in
+    /// the soup.
+    pub(super) fn turn_patches(&mut self, layers: &mut [Layers], mode: OrientMode) {
+        if mode == OrientMode::Keep {
+            return;
+        }
+        let turned = orient_sides(layers, &self.patch_of, self.patch_count, &self.operands);
+        let mut seen = vec![false; turned.len()];
+        for (n, triangle) in self.mesh.triangles.iter_mut().enumerate() {
+            let patch = self.patch_of[n] as usize;
+            if turned[patch] {
+                triangle.swap(1, 2);
+                let report = &mut self.reports[self.operands.of(n as u32)];
+                report.flipped_by_rays += 1;
+                report.flipped_patches += !std::mem::replace(&mut seen[patch], true) as usize;
+            }
+        }
+    }
+
+    /// The planes of the triangles, lattice coordinates.
+    pub(super) fn planes(&self, lattice: &Lattice) -> Vec<Plane> {
+        let corners = |t: usize| self.mesh.corners(t).map(|p| lattice.to_lattice(p));
+        (0..self.mesh.triangles.len()).into_par_iter().map(|t| Plane::through(corners(t))).collect()
+    }
+}
+
+/// Cleans and orients the patches of each operand.
+pub(super) fn prepare(inputs: &[TriMesh], mode: OrientMode) -> Result<Soup, Error> {
+    let mut soup = Soup {
+        mesh: TriMesh::default(),
+        operands: Operands::new([]),
+        patch_of: Vec::new(),
+        patch_count: 0,
+        reports: Vec::new(),
+    };
+    let mut counts = Vec::new();
+    for (operand, input) in inputs.iter().enumerate() {
+        let mut cleaned = clean(input);
+        if cleaned.mesh.triangles.is_empty() {
+            return Err(Error::Empty { operand });
+        }
+        let mut patches = orient_patches(&mut cleaned.mesh.triangles, &cleaned.unoriented, mode);
+        counts.push(cleaned.mesh.triangles.len());
+        soup.mesh.append(&cleaned.mesh);
+        soup.patch_of.extend(patches.of.drain(..).map(|patch| patch + soup.patch_count as u32));
+        soup.patch_count += patches.count;
+        soup.reports.push(OrientReport {
+            degenerate_dropped: cleaned.degenerate,
+            duplicates_dropped: cleaned.duplicates,
+            both_sided: cleaned.both_sided,
+            patches: patches.count,
+            flipped_in_patches: patches.flipped,
+            ..OrientReport::default()
+        });
+    }
+    soup.operands = Operands::new(counts);
+    Ok(soup)
+}
+
+/// The lattice for operands in `bounds`, or why there is none.
+pub(super) fn lattice(bounds: &Bounds, voxel: VoxelSize) -> Result<Lattice, Error> {
+    let longest = bounds.size().max_element();
+    let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    let refuse = |reason: String| Err(Error::VoxelSize { reason });
+    if farthest > LARGEST_COORDINATE {
+        return refuse(format!(
+            "coordinates reach {farthest:.3e}, which cannot be meant in any unit: \
+             look for damaged vertices, or scale the model down"
+        ));
+    }
+    let h = match voxel {
+        VoxelSize::Along(count) => longest / count as f64,
+        VoxelSize::Length(h) => h,
+    };
+    if !(h > 0.0 && h.is_finite()) {
+        return refuse(format!("a voxel size of {h} cannot be used; it must be a positive length"));
+    }
+    let coarsest = longest / (MAX_VOXELS - 16) as f64;
+    if h < coarsest {
+        return refuse(format!(
+            "a voxel of {h} makes {:.0} voxels along the longest side ({longest}); \
+             at most {} are possible: use a voxel of at least {coarsest:.4e}",
+            longest / h,
+            MAX_VOXELS - 16,
+        ));
+    }
+    let step = farthest * f64::from(f32::EPSILON);
+    if h < F32_STEPS * step {
+        return refuse(format!(
+            "coordinates reach {farthest:.4e}, where single precision steps by {step:.1e}: too coarse for a voxel \
+             of {h:.4e}; move the model to the origin or use a voxel of at least {:.1e}",
+            F32_STEPS * step
+        ));
+    }
+    Ok(Lattice::around(bounds, h))
+}
+
+/// The box around all operands.
+pub(super) fn bounds(inputs: &[TriMesh]) -> Result<Bounds, Error> {
+    let mut all: Option<Bounds> = None;
+    for (operand, input) in inputs.iter().enumerate() {
+        let bounds = input.bounds().ok_or(Error::Empty { operand })?;
+        all = Some(all.map_or(bounds, |all| all.union(&bounds)));
+    }
+    all.filter(|b| b.size().max_element() > 0.0).ok_or(Error::Empty { operand: 0 })
+}

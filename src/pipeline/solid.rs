@@ -1,0 +1,149 @@
+//! The small pieces between the stages of a boolean: look-ups, counts, and words.
+
+use glam::DVec3;
+
+use super::prepare::Soup;
+use super::{LdiReport, Report, ThinReport};
+use crate::contour::{Contour, Crossing, Edge, collapse_same_voxel};
+use crate::lattice::{Grid, Lattice};
+use crate::ldi::{Layers, Lengths, Spans, THIN, edge_crossing, lengths};
+use crate::mesh::{Plane, TriMesh, intersecting_triangles};
+use crate::progress::{Progress, Stopped};
+use crate::vote::{Votes, doubts};
+
+/// Crossings before and after the spans were made.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Count {
+    rays: usize,
+    hits: usize,
+    layers: usize,
+}
+
+pub(super) fn count(layers: &[Layers]) -> Count {
+    layers.iter().fold(Count::default(), |count, layers| Count {
+        rays: count.rays + layers.offsets.windows(2).filter(|w| w[1] > w[0]).count(),
+        hits: count.hits + layers.hits.len(),
+        layers: count.layers.max(layers.deepest()),
+    })
+}
+
+/// The crossings of lattice edges for the contour.
+pub(super) fn crossings<'a>(
+    spans: &'a [Spans],
+    distance: &'a Grid<f32>,
+) -> impl Fn(Edge) -> Option<Crossing> + Sync + 'a {
+    move |edge| {
+        let lower_inside = distance.get(edge.voxel) < 0.0;
+        let (t, hit) = edge_crossing(spans, edge.voxel, edge.axis as usize, lower_inside)?;
+        Some(Crossing { t, triangle: hit.triangle() })
+    }
+}
+
+/// The parts of the report that come from the rays and the votes.
+pub(super) fn report(lattice: &Lattice, spans: &[Spans], count: Count, votes: &Grid<Votes>) -> Report {
+    let lengths = lengths(spans);
+    let mut report = Report {
+        voxel: lattice.h,
+        dims: lattice.dims.to_array(),
+        ldi: LdiReport {
+            rays: count.rays,
+            silent_rays: spans.iter().map(|s| s.silent_rays).sum(),
+            hits: count.hits,
+            layers: count.layers,
+        },
+        vote: doubts(votes, lattice),
+        thin: thin(&lengths, lattice.h),
+        ..Report::default()
+    };
+    report.warnings = warnings(&report);
+    report
+}
+
+fn thin(lengths: &Lengths, h: f64) -> ThinReport {
+    let shorter = |sorted: &[f64]| sorted.partition_point(|&length| length < THIN);
+    let percentile = lengths.spans.get(lengths.spans.len() / 100).map(|voxels| voxels * h);
+    let thin_spans = shorter(&lengths.spans);
+    ThinReport {
+        spans: lengths.spans.len(),
+        thin_spans,
+        lost_spans: lengths.lost,
+        thin_gaps: shorter(&lengths.gaps),
+        thinnest: percentile,
+        voxel_that_keeps: percentile.filter(|_| thin_spans > 0).map(|length| length / THIN),
+    }
+}
+
+/// Shares of rays and spans above which a user should know.
+const MANY_LOST: f64 = 0.02;
+const MANY_SILENT: f64 = 0.25;
+
+fn warnings(report: &Report) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let share = |part: usize, all: usize| part as f64 / all.max(1) as f64;
+    let lost = share(report.thin.lost_spans, report.thin.spans);
+    if lost > MANY_LOST {
+        warnings.push(format!(
+            "{:.0} % of the rays through the solid pass walls that fall between voxels{}",
+            100.0 * lost,
+            keeping_voxel(&report.thin)
+        ));
+    }
+    let silent = share(report.ldi.silent_rays, report.ldi.rays);
+    if silent > MANY_SILENT {
+        warnings.push(format!(
+            "{:.0} % of the rays meet an open or doubled surface and cannot tell inside from outside: \
+             look at the doubtful regions",
+            100.0 * silent
+        ));
+    }
+    warnings
+}
+
+fn keeping_voxel(thin: &ThinReport) -> String {
+    match (thin.thinnest, thin.voxel_that_keeps) {
+        (Some(thinnest), Some(voxel)) => {
+            format!("; the thinnest 1 % are at most {thinnest:.4} thick: a voxel of {voxel:.4} would hold them")
+        }
+        _ => String::new(),
+    }
+}
+
+/// Why the result has no inside, in one sentence, with what to try.
+pub(super) fn why_nothing(spans: &[Spans], lattice: &Lattice, count: Count, operands: usize) -> String {
+    let silent: usize = spans.iter().map(|s| s.silent_rays).sum();
+    let lengths = lengths(spans);
+    let lost = thin(&lengths, lattice.h);
+    if 2 * silent > count.rays {
+        return format!(
+            "the surface encloses nothing: {:.0} % of the rays that meet it pass an open sheet; \
+             close or thicken it first",
+            100.0 * silent as f64 / count.rays as f64
+        );
+    }
+    if !lengths.spans.is_empty() {
+        return format!(
+            "no voxel lies inside: the walls are thinner than the voxel size of {:.4}{}",
+            lattice.h,
+            keeping_voxel(&lost)
+        );
+    }
+    match operands {
+        1 => "the surface encloses nothing".into(),
+        _ => "the result is empty: the operands have no such part in common".into(),
+    }
+}
+
+/// Merges the vertices of each voxel.
+pub(super) fn collapse(
+    contour: Contour,
+    soup: &Soup,
+    lattice: &Lattice,
+    progress: &Progress,
+) -> Result<Contour, Stopped> {
+    let plane = |triangle: u32| {
+        let plane = Plane::through(soup.mesh.corners(triangle as usize));
+        (plane.normal != DVec3::ZERO).then_some((plane.normal, plane.offset))
+    };
+    let find_intersecting = |mesh: &TriMesh| intersecting_triangles(mesh, progress);
+    Ok(collapse_same_voxel(contour, lattice, &plane, &find_intersecting, progress)?.contour)
+}

@@ -1,0 +1,127 @@
+//! What several test programs share: generated shapes and the real meshes beside the project.
+
+#![allow(dead_code)] // each test program uses its own part
+
+use std::path::{Path, PathBuf};
+
+use meshwright::mesh::TriMesh;
+
+/// The folder of real meshes; a test that needs it fails when it is missing.
+pub fn data_folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data")
+}
+
+/// All meshes of one folder of the real data, by name.
+pub fn data(folder: &str) -> Vec<(String, TriMesh)> {
+    let folder = data_folder().join(folder);
+    let entries = std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    let mut paths: Vec<PathBuf> = entries.map(|e| e.expect("readable folder").path()).collect();
+    paths.sort();
+    assert!(!paths.is_empty(), "{} is empty", folder.display());
+    paths.iter().map(|path| (file_name(path), read(path))).collect()
+}
+
+/// One mesh file.
+pub fn read(path: &Path) -> TriMesh {
+    meshwright::io::read(path).unwrap_or_else(|e| panic!("{e}")).mesh
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// Closed shapes made here.
+pub mod shapes {
+    use glam::DVec3;
+    use meshwright::mesh::TriMesh;
+
+    /// Shape number `which` (0 to 3) and its name.
+    pub fn closed(which: usize) -> (&'static str, TriMesh) {
+        match which {
+            0 => ("box", cuboid(DVec3::ZERO, DVec3::new(1.0, 0.7, 0.4))),
+            1 => ("torus", torus(64, 32)),
+            2 => ("thin torus", torus_of(48, 6, 1.0, 0.02)),
+            _ => {
+                let mut two = cuboid(DVec3::ZERO, DVec3::ONE);
+                two.append(&torus_of(20, 10, 1.1, 0.3));
+                ("overlapping shells", two)
+            }
+        }
+    }
+
+    /// An axis-aligned box of 12 triangles.
+    pub fn cuboid(min: DVec3, max: DVec3) -> TriMesh {
+        let corner = |n: usize| {
+            let pick = |bit: usize, low: f64, high: f64| if n >> bit & 1 == 1 { high } else { low };
+            DVec3::new(pick(0, min.x, max.x), pick(1, min.y, max.y), pick(2, min.z, max.z))
+        };
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        TriMesh {
+            positions: (0..8).map(corner).collect(),
+            triangles: quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect(),
+        }
+    }
+
+    /// A torus around z of radii 1 and 0.35.
+    pub fn torus(around: u32, tube: u32) -> TriMesh {
+        torus_of(around, tube, 1.0, 0.35)
+    }
+
+    /// A torus around z.
+    pub fn torus_of(around: u32, tube: u32, radius: f64, tube_radius: f64) -> TriMesh {
+        let turn = std::f64::consts::TAU;
+        let vertex = |n: u32| {
+            let (a, t) = (turn * (n / tube) as f64 / around as f64, turn * (n % tube) as f64 / tube as f64);
+            let r = radius + tube_radius * t.cos();
+            DVec3::new(r * a.cos(), r * a.sin(), tube_radius * t.sin())
+        };
+        let index = |i: u32, j: u32| (i % around) * tube + j % tube;
+        let quad = |n: u32| {
+            let (i, j) = (n / tube, n % tube);
+            let [a, b, c, d] = [index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        };
+        TriMesh {
+            positions: (0..around * tube).map(vertex).collect(),
+            triangles: (0..around * tube).flat_map(quad).collect(),
+        }
+    }
+}
+
+/// The first stages, for tests of the later ones.
+pub mod stages {
+    use meshwright::lattice::{Grid, Lattice};
+    use meshwright::ldi::{Expression, Operands, Spans, ldis, spans};
+    use meshwright::mesh::{Plane, TriMesh};
+    use meshwright::progress::Progress;
+    use meshwright::vote::{Jury, VoteRule, Votes, vote_near_surface};
+
+    /// Lattice with `resolution` voxels along the longest side.
+    pub fn lattice_of(mesh: &TriMesh, resolution: u32) -> Lattice {
+        let bounds = mesh.bounds().expect("triangles");
+        Lattice::around(&bounds, bounds.size().max_element() / resolution as f64)
+    }
+
+    /// The spans of one operand, in all 13 directions.
+    pub fn spans_of(mesh: &TriMesh, lattice: &Lattice) -> Vec<Spans> {
+        let operands = Operands::new([mesh.triangles.len()]);
+        let layers = ldis(mesh, lattice, 1, &Progress::none()).expect("not stopped");
+        layers.into_iter().map(|layers| spans(layers, &operands, &Expression::Operand(0))).collect()
+    }
+
+    /// Calls `judge` with the jury of one operand.
+    pub fn with_jury<T>(spans: &[Spans], rule: VoteRule, judge: impl FnOnce(&Jury<'_>) -> T) -> T {
+        let operands = Operands::new([u32::MAX as usize]);
+        judge(&Jury { spans, operands: &operands, expression: &Expression::Operand(0), rule })
+    }
+
+    /// The votes near the surface of one operand.
+    pub fn votes_of(spans: &[Spans], rule: VoteRule) -> Grid<Votes> {
+        with_jury(spans, rule, |jury| vote_near_surface(jury, &Progress::none()).expect("not stopped"))
+    }
+
+    /// The planes of a mesh's triangles, lattice coordinates.
+    pub fn planes_of(mesh: &TriMesh, lattice: &Lattice) -> Vec<Plane> {
+        (0..mesh.triangles.len()).map(|t| Plane::through(mesh.corners(t).map(|p| lattice.to_lattice(p)))).collect()
+    }
+}
