@@ -1,0 +1,358 @@
+//! The arguments of every verb.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use super::length::{Length, parse_duration, parse_size};
+use super::render::{ViewChoice, parse_view};
+use crate::io::{Format, Unit};
+use crate::orient::OrientMode;
+use crate::vote::VoteRule;
+
+const EXIT_CODES: &str = "\
+Exit status:
+  0    done, and verified on the written file
+  1    internal error
+  2    wrong usage
+  3    done, but a promise or a stated limit does not hold
+  4    unreadable or empty input, or nothing is enclosed
+  5    more memory needed than --max-memory allows
+  6    --timeout has passed
+  130  interrupted
+
+IN and OUT may be `-` for standard input and output.
+LEN is 0.4mm, 1in, 1% (of the bounding box diagonal) or a plain number in the file's units.";
+
+/// Repairs triangle meshes and does booleans on broken ones. Offline, on the CPU.
+#[derive(Debug, Parser)]
+#[command(name = "meshwright", version, after_help = EXIT_CODES, propagate_version = true)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+/// The verbs.
+#[derive(Debug, Subcommand)]
+pub enum Verb {
+    /// Make one closed, oriented solid surface of a broken mesh
+    #[command(after_help = EXIT_CODES)]
+    Repair(RepairArgs),
+    /// Everything inside at least one of the meshes
+    #[command(after_help = EXIT_CODES)]
+    Union(BooleanArgs),
+    /// Everything inside all of the meshes
+    #[command(after_help = EXIT_CODES)]
+    Intersection(BooleanArgs),
+    /// The first mesh without all the others
+    #[command(after_help = EXIT_CODES)]
+    Difference(BooleanArgs),
+    /// Any boolean expression, such as 'a - (b | c) & d'
+    #[command(after_help = CSG_HELP)]
+    Csg(CsgArgs),
+    /// Say what is in a mesh file and what is wrong with it
+    #[command(after_help = EXIT_CODES)]
+    Inspect(InspectArgs),
+    /// Write the same triangles in another format; nothing is repaired
+    #[command(after_help = EXIT_CODES)]
+    Convert(ConvertArgs),
+    /// Draw a mesh, or two for comparison, as a PNG picture
+    #[command(after_help = EXIT_CODES)]
+    Render(RenderArgs),
+}
+
+const CSG_HELP: &str = "\
+Operators, from the one that binds tightest, grouping from the left as in Python:
+  a - b   inside a and not inside b
+  a & b   inside both
+  a ^ b   inside exactly one
+  a | b   inside at least one
+Parentheses group. A name is letters, digits and _, and begins with no digit.
+
+Example:
+  meshwright csg 'a - (b | c)' a=block.stl b=hole.obj c=slot.ply -o part.3mf";
+
+/// `repair IN -o OUT`.
+#[derive(Debug, Args)]
+pub struct RepairArgs {
+    /// The mesh to repair; all its shells together are one solid
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// Flags of the pipeline and its output.
+    #[command(flatten)]
+    pub solid: SolidArgs,
+}
+
+/// `union A B... -o OUT` and its sisters.
+#[derive(Debug, Args)]
+pub struct BooleanArgs {
+    /// The meshes, two or more; each may be broken
+    #[arg(value_name = "IN", num_args = 2.., required = true)]
+    pub inputs: Vec<PathBuf>,
+    /// Flags of the pipeline and its output.
+    #[command(flatten)]
+    pub solid: SolidArgs,
+}
+
+/// `csg EXPR NAME=FILE... -o OUT`.
+#[derive(Debug, Args)]
+pub struct CsgArgs {
+    /// The expression over the names
+    #[arg(value_name = "EXPR")]
+    pub expression: String,
+    /// A mesh and the name it goes by in the expression
+    #[arg(value_name = "NAME=FILE", required = true)]
+    pub operands: Vec<String>,
+    /// Flags of the pipeline and its output.
+    #[command(flatten)]
+    pub solid: SolidArgs,
+}
+
+/// `inspect IN`.
+#[derive(Debug, Args)]
+pub struct InspectArgs {
+    /// The mesh to look at
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// Exit with 3 when the mesh has one of these defects
+    #[arg(long, value_name = "DEFECT", value_delimiter = ',', value_enum)]
+    pub fail_on: Vec<Defect>,
+    /// How the input is read.
+    #[command(flatten)]
+    pub reading: InputArgs,
+    /// Flags of every verb.
+    #[command(flatten)]
+    pub common: CommonArgs,
+}
+
+/// `convert IN -o OUT`.
+#[derive(Debug, Args)]
+pub struct ConvertArgs {
+    /// The mesh to write again
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// Where to write it
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    /// How the input is read.
+    #[command(flatten)]
+    pub reading: InputArgs,
+    /// How the output is written.
+    #[command(flatten)]
+    pub writing: OutputArgs,
+    /// Flags of every verb.
+    #[command(flatten)]
+    pub common: CommonArgs,
+}
+
+/// `render IN [AFTER] -o PNG`.
+#[derive(Debug, Args)]
+pub struct RenderArgs {
+    /// The mesh to draw
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// A second mesh: both are drawn side by side, from the same point of view
+    #[arg(value_name = "AFTER")]
+    pub after: Option<PathBuf>,
+    /// Where to write the PNG
+    #[arg(short, long, value_name = "PNG")]
+    pub output: PathBuf,
+    /// Width of the picture (of each, for two), pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 1200, value_parser = clap::value_parser!(u32).range(16..=16384))]
+    pub width: u32,
+    /// Height, pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 900, value_parser = clap::value_parser!(u32).range(16..=16384))]
+    pub height: u32,
+    /// From where: iso, front, back, left, right, top, bottom, or the direction to the viewer as X,Y,Z
+    #[arg(long, value_name = "VIEW", default_value = "iso", value_parser = parse_view, allow_hyphen_values = true)]
+    pub view: ViewChoice,
+    /// The y axis points up, not z
+    #[arg(long)]
+    pub y_up: bool,
+    /// Which edges of triangles are drawn
+    #[arg(long, value_enum, default_value_t = EdgeChoice::Sharp)]
+    pub edges: EdgeChoice,
+    /// Do not colour defects
+    #[arg(long)]
+    pub no_defects: bool,
+    /// Write over an input file
+    #[arg(long)]
+    pub force: bool,
+    /// How the input is read.
+    #[command(flatten)]
+    pub reading: InputArgs,
+    /// Flags of every verb.
+    #[command(flatten)]
+    pub common: CommonArgs,
+}
+
+/// Flags of `repair` and the booleans.
+#[derive(Debug, Args)]
+pub struct SolidArgs {
+    /// Where to write the result
+    #[arg(short, long, value_name = "OUT", required_unless_present = "plan")]
+    pub output: Option<PathBuf>,
+    /// Voxels along the longest side of the bounding box
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel")]
+    pub resolution: u32,
+    /// Size of a voxel, instead of --resolution
+    #[arg(long, value_name = "LEN")]
+    pub voxel: Option<Length>,
+    /// Which side of the triangles is outside: find out, or trust the file
+    #[arg(long, value_enum, default_value_t = OrientChoice::Auto)]
+    pub orient: OrientChoice,
+    /// How rays that disagree are settled
+    #[arg(long, value_enum, default_value_t = VoteChoice::HalfRays)]
+    pub vote: VoteChoice,
+    /// Keep the vertices of every voxel apart: more triangles
+    #[arg(long)]
+    pub no_collapse: bool,
+    /// Refuse to start when more memory would be needed (500M, 2G)
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    pub max_memory: Option<u64>,
+    /// Say what the run would cost, and do nothing
+    #[arg(long)]
+    pub plan: bool,
+    /// How the inputs are read.
+    #[command(flatten)]
+    pub reading: InputArgs,
+    /// How the output is written.
+    #[command(flatten)]
+    pub writing: OutputArgs,
+    /// Flags of every verb.
+    #[command(flatten)]
+    pub common: CommonArgs,
+}
+
+/// How inputs are read.
+#[derive(Debug, Clone, Args)]
+pub struct InputArgs {
+    /// Format of the input, when neither its content nor its name should decide
+    #[arg(long, value_name = "FORMAT")]
+    pub in_format: Option<Format>,
+    /// Unit of the numbers in files that carry none (STL, OBJ, PLY, OFF)
+    #[arg(long, value_name = "UNIT")]
+    pub unit: Option<Unit>,
+}
+
+/// How the output is written.
+#[derive(Debug, Clone, Args)]
+pub struct OutputArgs {
+    /// Format of the output, when its name should not decide
+    #[arg(long, value_name = "FORMAT")]
+    pub out_format: Option<Format>,
+    /// Text instead of binary, where the format has both (STL, PLY)
+    #[arg(long)]
+    pub ascii: bool,
+    /// Write over an input file
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Flags of every verb.
+#[derive(Debug, Clone, Args)]
+pub struct CommonArgs {
+    /// Threads to use [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Give up after this time (30s, 5m)
+    #[arg(long, value_name = "DUR", value_parser = parse_duration)]
+    pub timeout: Option<Duration>,
+    /// Write a report of the run, as JSON, to this file
+    #[arg(long, value_name = "FILE.json")]
+    pub report: Option<PathBuf>,
+    /// Write the report, as JSON, to standard output
+    #[arg(long)]
+    pub json: bool,
+    /// Only errors on standard error
+    #[arg(short, long, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// More on standard error
+    #[arg(short, long)]
+    pub verbose: bool,
+}
+
+/// `--orient`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum OrientChoice {
+    /// Turn triangles so that patches agree and the rays enter before they leave
+    Auto,
+    /// Trust the file
+    Keep,
+}
+
+impl From<OrientChoice> for OrientMode {
+    fn from(choice: OrientChoice) -> Self {
+        match choice {
+            OrientChoice::Auto => Self::Auto,
+            OrientChoice::Keep => Self::Keep,
+        }
+    }
+}
+
+/// `--vote`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum VoteChoice {
+    /// The majority of the rays that balance; where they are few, their halves
+    HalfRays,
+    /// The majority of the rays that balance
+    Majority,
+    /// More than half of all 13 rays
+    Paper,
+}
+
+impl From<VoteChoice> for VoteRule {
+    fn from(choice: VoteChoice) -> Self {
+        match choice {
+            VoteChoice::HalfRays => Self::HalfRays,
+            VoteChoice::Majority => Self::Majority,
+            VoteChoice::Paper => Self::Paper,
+        }
+    }
+}
+
+/// `--edges` of `render`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum EdgeChoice {
+    /// None
+    None,
+    /// Those where the surface turns sharply
+    Sharp,
+    /// All
+    All,
+}
+
+/// `--fail-on` of `inspect`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Defect {
+    /// Edges with only one triangle
+    Open,
+    /// Edges or vertices where more than one sheet meets
+    Nonmanifold,
+    /// Neighbours that disagree about which side is outside
+    Inconsistent,
+    /// Triangles without area
+    Degenerate,
+    /// Triangles that are there twice
+    Duplicate,
+    /// Triangles that cut others
+    #[value(name = "self")]
+    SelfIntersecting,
+    /// A volume below zero
+    InsideOut,
+    /// Any of these
+    Any,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,87 @@
+//! `convert IN -o OUT`: the same triangles in another format.
+
+use serde_json::json;
+
+use super::args::ConvertArgs;
+use super::exit::{Exit, Failure};
+use super::input;
+use super::output::{Target, write_verified};
+use super::report::{OutputEntry, RunReport};
+use super::session::Session;
+use super::words;
+use crate::io::Loaded;
+use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
+
+/// Reads one file and writes it again.
+pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
+    let mut target = Target::new(&args.output, &args.writing, &[&args.input])?;
+    let mut inputs = report.timed("read", |_| input::read_all(&[&args.input], &args.reading, session))?;
+    let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
+    target.set_unit(unit);
+    report.options = json!({
+        "unit": unit.map(|unit| unit.to_string()),
+        "ascii": args.writing.ascii,
+        "out_format": target.options.format.to_string(),
+    });
+    report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
+    let Some(input) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
+    report.warnings.extend(input.loaded.warnings.iter().cloned());
+    if input.loaded.parts.len() > 1 {
+        report.warnings.push(format!("the {} objects of the input become one", input.loaded.parts.len()));
+    }
+    let before = state(&input.loaded.mesh, session)?;
+    let (entry, after) = report.timed("write and verify", |_| {
+        write_verified(&target, &input.loaded.mesh, session, |read| {
+            check_close(read, &input.loaded.mesh)?;
+            state(&read.mesh, session)
+        })
+    })?;
+    let triangles = after.triangles;
+    report.inputs[0].validity = Some(before.clone());
+    report.output = Some(OutputEntry { validity: Some(after.clone()), ..entry });
+    let lost = losses(&before, &after);
+    report.warnings.extend(lost.iter().cloned());
+    session.clear_bar();
+    session.say(&format!(
+        "{}: {}, as {}{}",
+        args.output.display(),
+        words::plural(triangles, "triangle"),
+        target.options.format,
+        unit.map_or(String::new(), |unit| format!(", in {unit}"))
+    ));
+    for warning in &report.warnings {
+        session.say(&format!("note: {warning}"));
+    }
+    Ok(if lost.is_empty() { Exit::Done } else { Exit::Limit })
+}
+
+/// Counts that rounding could worsen; equal positions are one vertex, as STL has it anyway.
+fn state(mesh: &TriMesh, session: &Session) -> Result<Validity, Failure> {
+    let options = ValidateOptions { self_intersections: false, weld: true };
+    Ok(validate(mesh, &options, &session.progress)?)
+}
+
+/// Whether the file holds the mesh, up to the rounding of its numbers.
+fn check_close(read: &Loaded, mesh: &TriMesh) -> Result<(), Failure> {
+    let close = |a: glam::DVec3, b: glam::DVec3| (a - b).abs().max_element() <= 1e-6 * a.abs().max_element();
+    let same = read.mesh.triangles.len() == mesh.triangles.len()
+        && (0..mesh.triangles.len()).all(|t| {
+            let (a, b) = (mesh.corners(t), read.mesh.corners(t));
+            (0..3).all(|i| close(a[i], b[i]))
+        });
+    if same { Ok(()) } else { Err(Failure::internal("the file does not hold what was written to it; it was removed")) }
+}
+
+/// What the rounding to the format's numbers made worse.
+fn losses(before: &Validity, after: &Validity) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if after.degenerate_triangles > before.degenerate_triangles {
+        let more = after.degenerate_triangles - before.degenerate_triangles;
+        sentences.push(format!("{} lost their area by rounding to the numbers of the format", words::plural(more, "triangle")));
+    }
+    if after.vertices - after.unused_vertices < before.vertices - before.unused_vertices {
+        let fewer = before.vertices - before.unused_vertices - (after.vertices - after.unused_vertices);
+        sentences.push(format!("{} fell together by rounding to the numbers of the format", words::plural(fewer, "vertex")));
+    }
+    sentences
+}

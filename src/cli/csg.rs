@@ -1,0 +1,94 @@
+//! `csg EXPR NAME=FILE... -o OUT`.
+
+use std::path::Path;
+
+use super::args::CsgArgs;
+use super::csg_parser::{self, ExpressionError};
+use super::exit::{Exit, Failure};
+use super::report::RunReport;
+use super::session::Session;
+use super::solid::{self, Job};
+
+/// Evaluates the expression over the named files.
+pub fn run(args: &CsgArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
+    let operands = named_files(&args.operands)?;
+    let names: Vec<&str> = operands.iter().map(|(name, _)| *name).collect();
+    let expression =
+        csg_parser::parse(&args.expression, &names).map_err(|e| explain(&args.expression, &names, &e))?;
+    let job = Job {
+        paths: operands.iter().map(|(_, path)| *path).collect(),
+        names: names.iter().map(|name| name.to_string()).collect(),
+        expression,
+        args: &args.solid,
+    };
+    solid::run(&job, session, report)
+}
+
+/// The paths of `NAME=FILE` arguments.
+pub fn paths(operands: &[String]) -> Vec<&Path> {
+    operands.iter().filter_map(|operand| operand.split_once('=')).map(|(_, path)| Path::new(path)).collect()
+}
+
+fn named_files(operands: &[String]) -> Result<Vec<(&str, &Path)>, Failure> {
+    let mut files: Vec<(&str, &Path)> = Vec::new();
+    for operand in operands {
+        let (name, path) = operand.split_once('=').filter(|(_, path)| !path.is_empty()).ok_or_else(|| {
+            Failure::usage(format!("`{operand}` is not NAME=FILE")).hint(format!("for example a={operand}"))
+        })?;
+        if !csg_parser::is_name(name) {
+            return Err(Failure::usage(format!("`{name}` in `{operand}` is not a name"))
+                .hint("letters, digits and _, and no digit first"));
+        }
+        if files.iter().any(|(other, _)| *other == name) {
+            return Err(Failure::usage(format!("the name `{name}` is given twice")));
+        }
+        files.push((name, Path::new(path)));
+    }
+    Ok(files)
+}
+
+/// The error with a caret below its place, and what could have been written.
+fn explain(text: &str, names: &[&str], error: &ExpressionError) -> Failure {
+    let list = names.join(", ");
+    let failure = match error.position() {
+        Some(at) => {
+            let column = text[..at].chars().count();
+            // A control character would move the caret.
+            let shown: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+            Failure::usage(format!("column {} of the expression: {error}", column + 1))
+                .place(format!("  {shown}\n  {}^", " ".repeat(column)))
+        }
+        None => Failure::usage(error.to_string()),
+    };
+    match error {
+        ExpressionError::UnknownName { .. } => failure.hint(format!("the names given are {list}")),
+        ExpressionError::UnusedNames { .. } => failure.hint("use them, or leave their files away"),
+        _ => failure,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn operands_need_a_name_and_a_file() {
+        let parse = |texts: &[&str]| {
+            let owned: Vec<String> = texts.iter().map(|t| t.to_string()).collect();
+            named_files(&owned).map(|files| files.len()).map_err(|f| f.message)
+        };
+        assert_eq!(parse(&["a=x.stl", "b=y=z.stl"]), Ok(2));
+        assert_eq!(parse(&["x.stl"]), Err("`x.stl` is not NAME=FILE".into()));
+        assert_eq!(parse(&["a="]), Err("`a=` is not NAME=FILE".into()));
+        assert_eq!(parse(&["1a=x.stl"]), Err("`1a` in `1a=x.stl` is not a name".into()));
+        assert_eq!(parse(&["a=x.stl", "a=y.stl"]), Err("the name `a` is given twice".into()));
+    }
+
+    #[test]
+    fn the_caret_stands_below_the_place() {
+        let error = csg_parser::parse("a - ü", &["a"]).unwrap_err();
+        let failure = explain("a - ü", &["a"], &error);
+        assert_eq!(failure.message, "column 5 of the expression: expected a name or `(`, found `ü`");
+        assert_eq!(failure.place.as_deref(), Some("  a - ü\n      ^"));
+    }
+}

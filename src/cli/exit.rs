@@ -1,0 +1,159 @@
+//! Exit codes, and what every error means for them.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::length::QuantityError;
+use super::words;
+use crate::pipeline;
+use crate::progress::Stopped;
+
+/// The exit status of the process.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Exit {
+    /// Done, and verified on the written file.
+    Done,
+    /// Internal error.
+    Internal,
+    /// Wrong usage.
+    Usage,
+    /// Done, but a promise or a stated limit does not hold.
+    Limit,
+    /// Unreadable or empty input, or nothing enclosed.
+    Input,
+    /// Memory cap.
+    Memory,
+    /// Deadline.
+    Deadline,
+    /// Interrupted.
+    Interrupted,
+}
+
+impl Exit {
+    /// The number the shell sees.
+    pub fn code(self) -> u8 {
+        match self {
+            Self::Done => 0,
+            Self::Internal => 1,
+            Self::Usage => 2,
+            Self::Limit => 3,
+            Self::Input => 4,
+            Self::Memory => 5,
+            Self::Deadline => 6,
+            Self::Interrupted => 130,
+        }
+    }
+}
+
+/// Why a run ended without its result: a sentence, perhaps something to try, and the exit status.
+#[derive(Debug, Clone, Serialize)]
+pub struct Failure {
+    /// The exit status.
+    #[serde(skip)]
+    pub exit: Exit,
+    /// One sentence.
+    pub message: String,
+    /// Lines that show the place, printed as they are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub place: Option<String>,
+    /// Something to try.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hint: Option<String>,
+}
+
+impl Failure {
+    /// A failure without a hint.
+    pub fn new(exit: Exit, message: impl Into<String>) -> Self {
+        Self { exit, message: message.into(), place: None, hint: None }
+    }
+
+    /// Wrong usage.
+    pub fn usage(message: impl Into<String>) -> Self {
+        Self::new(Exit::Usage, message)
+    }
+
+    /// Bad input.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::new(Exit::Input, message)
+    }
+
+    /// A bug of ours, or a machine that does not do what it says.
+    pub fn internal(message: impl Into<String>) -> Self {
+        Self::new(Exit::Internal, message)
+    }
+
+    /// The same with something to try.
+    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// The same with lines that show the place.
+    pub fn place(mut self, place: impl Into<String>) -> Self {
+        self.place = Some(place.into());
+        self
+    }
+
+    /// What a pipeline's error means, for operands that go by `labels`. `voxel_asked`: whether
+    /// the user chose the voxel size as a length.
+    pub fn pipeline(error: &pipeline::Error, labels: &[String], unit: words::UnitName<'_>, voxel_asked: bool) -> Self {
+        use pipeline::Error;
+        match error {
+            Error::Stopped(stopped) => Self::from(*stopped),
+            Error::Empty { operand } => {
+                let label = labels.get(*operand).map_or("the input", String::as_str);
+                Self::input(format!("{label}: no triangle has an area"))
+            }
+            Error::NothingEnclosed { reason } => Self::input(reason.clone()),
+            Error::VoxelSize { reason } => {
+                Self::new(if voxel_asked { Exit::Usage } else { Exit::Input }, reason.clone())
+            }
+            Error::Memory { needed, allowed, voxel_that_fits } => Self::new(
+                Exit::Memory,
+                format!(
+                    "about {} of memory would be needed, and --max-memory allows {}",
+                    words::bytes(*needed),
+                    words::bytes(*allowed)
+                ),
+            )
+            .hint(format!(
+                "--voxel {} would fit",
+                words::with_unit(&words::rounded_up(*voxel_that_fits), unit).replace(' ', "")
+            )),
+            Error::MissingOperand { .. } => Self::internal(error.to_string()),
+        }
+    }
+}
+
+impl From<Stopped> for Failure {
+    fn from(stopped: Stopped) -> Self {
+        match stopped {
+            Stopped::Interrupted => Self::new(Exit::Interrupted, "interrupted; no output was written"),
+            Stopped::Deadline => {
+                Self::new(Exit::Deadline, "the time given with --timeout has passed; no output was written")
+                    .hint("a larger --timeout, or a lower --resolution")
+            }
+        }
+    }
+}
+
+impl From<QuantityError> for Failure {
+    fn from(error: QuantityError) -> Self {
+        let failure = Self::usage(error.to_string());
+        match error {
+            QuantityError::UnitUnknown { .. } => {
+                failure.hint("say what the file's numbers are, for example --unit mm, or give a plain number")
+            }
+            QuantityError::VoxelItself { .. } => failure.hint("a LEN such as 0.4mm, 1% or 0.4, or --resolution N"),
+            _ => failure,
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}

@@ -1,0 +1,145 @@
+//! Reading: files and standard input, their units and their state.
+
+use std::io::Read;
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+
+use super::args::InputArgs;
+use super::exit::Failure;
+use super::report::{InputEntry, PartEntry};
+use super::session::Session;
+use crate::io::{self, Format, Loaded, Unit};
+use crate::mesh::{ValidateOptions, Validity, validate};
+
+/// One mesh as read.
+pub struct Input {
+    /// What the user called it: a path, or "standard input".
+    pub label: String,
+    /// The content.
+    pub loaded: Loaded,
+    /// Its entry in the report; the validity is filled in later.
+    pub entry: InputEntry,
+}
+
+/// Whether `path` stands for a standard stream.
+pub fn is_stream(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// How a path is called in messages.
+pub fn label(path: &Path) -> String {
+    if is_stream(path) { "standard input".into() } else { path.display().to_string() }
+}
+
+/// Reads every path, in order; the standard input at most once.
+pub fn read_all(paths: &[&Path], args: &InputArgs, session: &Session) -> Result<Vec<Input>, Failure> {
+    if paths.iter().filter(|path| is_stream(path)).count() > 1 {
+        return Err(Failure::usage("standard input (`-`) can be read only once"));
+    }
+    session.progress.stage("read")?;
+    paths.iter().map(|path| read(path, args, session)).collect()
+}
+
+/// Reads one path; an input without triangles is an error.
+pub fn read(path: &Path, args: &InputArgs, session: &Session) -> Result<Input, Failure> {
+    session.progress.check()?;
+    let label = label(path);
+    let stream = is_stream(path);
+    let bytes = if stream { read_stream() } else { std::fs::read(path) }
+        .map_err(|e| Failure::input(format!("cannot read {label}: {}", plain_reason(&e))))?;
+    session.progress.check()?;
+    let name = (!stream).then_some(path);
+    let loaded = io::read_bytes(&bytes, args.in_format, name).map_err(|e| unreadable(&label, stream, args, &e))?;
+    if loaded.mesh.triangles.is_empty() {
+        return Err(Failure::input(format!("{label}: the file has no triangles")));
+    }
+    session.progress.check()?;
+    let entry = InputEntry {
+        path: label.clone(),
+        name: None,
+        format: loaded.format.to_string(),
+        bytes: bytes.len() as u64,
+        sha256: sha256(&bytes),
+        unit: loaded.unit.map(|unit| unit.to_string()),
+        parts: loaded
+            .parts
+            .iter()
+            .map(|part| PartEntry { name: part.name.clone(), triangles: part.triangles.len() })
+            .collect(),
+        warnings: loaded.warnings.clone(),
+        validity: None,
+    };
+    Ok(Input { label, loaded, entry })
+}
+
+fn read_stream() -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    std::io::stdin().lock().read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn unreadable(label: &str, stream: bool, args: &InputArgs, error: &io::ReadError) -> Failure {
+    let text = error.to_string();
+    let message = if text.contains(label) { text } else { format!("{label}: {text}") };
+    let failure = Failure::input(message);
+    match args.in_format {
+        None if stream => failure.hint("--in-format says what standard input holds, for example --in-format stl"),
+        Some(format) => failure.hint(format!("it was read as {format}, as --in-format says")),
+        None => failure,
+    }
+}
+
+/// "No such file or directory" without "(os error 2)".
+pub fn plain_reason(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or(&text).to_string()
+}
+
+/// SHA-256 of `bytes`, in hexadecimal digits.
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Whether the triangles of a format share no vertices by themselves, so that equal positions
+/// mean the same vertex: STL has no indices, and glTF splits vertices where normals differ.
+pub fn is_soup_format(format: Format) -> bool {
+    matches!(format, Format::Stl | Format::Glb | Format::Gltf)
+}
+
+/// The state of a mesh as its file holds it.
+pub fn examine(loaded: &Loaded, session: &Session) -> Result<Validity, Failure> {
+    let options = ValidateOptions { self_intersections: true, weld: is_soup_format(loaded.format) };
+    Ok(validate(&loaded.mesh, &options, &session.progress)?)
+}
+
+/// Brings all inputs to one unit and says which. Files that carry none are taken to be in
+/// `--unit`, or in the unit of the others; nothing is rescaled without a line about it.
+pub fn common_unit(inputs: &mut [Input], args: &InputArgs, notes: &mut Vec<String>) -> Option<Unit> {
+    let carried = inputs.iter().find_map(|input| input.loaded.unit);
+    if let (Some(asked), true) = (args.unit, inputs.iter().all(|input| input.loaded.unit.is_some())) {
+        if inputs.iter().any(|input| input.loaded.unit != Some(asked)) {
+            notes.push(format!("--unit {asked} is not used: the files carry their own unit"));
+        }
+    }
+    let unit = carried.or(args.unit)?;
+    for input in inputs {
+        let own = match (input.loaded.unit, args.unit) {
+            (Some(own), _) => own,
+            (None, Some(asked)) => asked,
+            (None, None) => {
+                notes.push(format!("{} carries no unit; its numbers are taken as {unit}", input.label));
+                unit
+            }
+        };
+        if own != unit {
+            let factor = own.metres() / unit.metres();
+            for p in &mut input.loaded.mesh.positions {
+                *p *= factor;
+            }
+            notes.push(format!("{} is in {own}; it was rescaled to {unit} (times {factor})", input.label));
+        }
+        input.loaded.unit = Some(unit);
+    }
+    Some(unit)
+}

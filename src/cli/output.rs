@@ -1,0 +1,190 @@
+//! Writing: to a file or a stream, verified before it appears under its name.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::args::OutputArgs;
+use super::exit::Failure;
+use super::input::{is_stream, plain_reason, sha256};
+use super::report::OutputEntry;
+use super::session::Session;
+use crate::io::{self, Format, Loaded, Unit, WriteOptions};
+use crate::mesh::TriMesh;
+
+/// Where a mesh goes, and how it is encoded.
+pub struct Target {
+    /// The path as given.
+    pub path: PathBuf,
+    /// Encoding.
+    pub options: WriteOptions,
+}
+
+impl Target {
+    /// Checks everything about the output that can be known before the work begins.
+    pub fn new(path: &Path, args: &OutputArgs, inputs: &[&Path]) -> Result<Self, Failure> {
+        let format = match (args.out_format, Format::from_path(path)) {
+            (Some(format), _) | (None, Some(format)) => format,
+            (None, None) if is_stream(path) => {
+                return Err(Failure::usage("standard output has no name that tells its format")
+                    .hint("--out-format says it, for example --out-format stl"));
+            }
+            (None, None) => {
+                return Err(Failure::usage(format!("the name {} does not tell its format", path.display()))
+                    .hint("end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or give --out-format"));
+            }
+        };
+        check_overwrite(path, args.force, inputs)?;
+        Ok(Self { path: path.to_path_buf(), options: WriteOptions { format, ascii: args.ascii, unit: None } })
+    }
+
+    /// The unit of the mesh that will be written.
+    pub fn set_unit(&mut self, unit: Option<Unit>) {
+        self.options.unit = unit;
+    }
+}
+
+/// Refuses to write over an input without `--force`, into a folder that is not there, or over a folder.
+pub fn check_overwrite(output: &Path, force: bool, inputs: &[&Path]) -> Result<(), Failure> {
+    if is_stream(output) {
+        return Ok(());
+    }
+    if !force && inputs.iter().any(|input| same_file(input, output)) {
+        return Err(Failure::usage(format!("{} is an input and would be overwritten", output.display()))
+            .hint("another name after -o, or --force"));
+    }
+    check_folder(output)
+}
+
+/// Whether two paths lead to the same existing file.
+pub fn same_file(a: &Path, b: &Path) -> bool {
+    if is_stream(a) || is_stream(b) {
+        return false;
+    }
+    match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}
+
+/// Whether a file can be made at `path`, as far as can be told beforehand.
+pub fn check_folder(path: &Path) -> Result<(), Failure> {
+    if path.is_dir() {
+        return Err(Failure::usage(format!("{} is a folder", path.display())));
+    }
+    let folder = folder_of(path);
+    match folder.metadata() {
+        Ok(metadata) if metadata.is_dir() => Ok(()),
+        Ok(_) => Err(Failure::usage(format!("{} is not a folder", folder.display()))),
+        Err(e) => Err(Failure::usage(format!("cannot write into {}: {}", folder.display(), plain_reason(&e)))),
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// Writes `mesh`, reads it back, and lets `judge` look at what was read. Only when that is content
+/// does the file appear under its name; before, it has a temporary name in the same folder, and if
+/// anything fails nothing is left. Streams and devices get their bytes after the judgement.
+pub fn write_verified<T>(
+    target: &Target,
+    mesh: &TriMesh,
+    session: &Session,
+    judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
+) -> Result<(OutputEntry, T), Failure> {
+    session.progress.stage("write")?;
+    let direct = is_stream(&target.path) || target.path.metadata().is_ok_and(|metadata| !metadata.is_file());
+    if direct { write_direct(target, mesh, session, judge) } else { write_file(target, mesh, session, judge) }
+}
+
+fn write_direct<T>(
+    target: &Target,
+    mesh: &TriMesh,
+    session: &Session,
+    judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
+) -> Result<(OutputEntry, T), Failure> {
+    let mut bytes = Vec::new();
+    encode(target, mesh, &mut bytes)?;
+    session.progress.stage("verify")?;
+    let verdict = judge(&read_back(&bytes, target)?)?;
+    session.finish(|| match is_stream(&target.path) {
+        true => write_stream(&bytes),
+        false => std::fs::write(&target.path, &bytes).map_err(|e| unwritable(&target.path, &e)),
+    })?;
+    Ok((entry(target, &bytes), verdict))
+}
+
+fn write_file<T>(
+    target: &Target,
+    mesh: &TriMesh,
+    session: &Session,
+    judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
+) -> Result<(OutputEntry, T), Failure> {
+    // A link stays a link: the file it leads to is replaced.
+    let path = target.path.canonicalize().unwrap_or_else(|_| target.path.clone());
+    let failed = |e: &std::io::Error| unwritable(&target.path, e);
+    let file = temporary_file(&path).map_err(|e| {
+        Failure::usage(format!("cannot write into {}: {}", folder_of(&path).display(), plain_reason(&e)))
+    })?;
+    session.temporary(file.path());
+    let mut buffer = std::io::BufWriter::with_capacity(1 << 20, file.as_file());
+    encode(target, mesh, &mut buffer)?;
+    buffer.flush().map_err(|e| failed(&e))?;
+    drop(buffer);
+    file.as_file().sync_all().map_err(|e| failed(&e))?;
+    session.progress.stage("verify")?;
+    let bytes = std::fs::read(file.path()).map_err(|e| failed(&e))?;
+    let verdict = judge(&read_back(&bytes, target)?)?;
+    session.finish(|| file.persist(&path).map_err(|e| failed(&e.error)))?;
+    Ok((entry(target, &bytes), verdict))
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::internal(format!("cannot write {}: {}", path.display(), plain_reason(error)))
+}
+
+fn temporary_file(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".meshwright-").suffix(".tmp");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // Like any new file: the umask takes its share. An existing file keeps its mode.
+        let mode = path.metadata().map_or(0o666, |metadata| metadata.permissions().mode() & 0o777);
+        builder.permissions(std::fs::Permissions::from_mode(mode));
+    }
+    builder.tempfile_in(folder_of(path))
+}
+
+fn encode(target: &Target, mesh: &TriMesh, out: &mut dyn Write) -> Result<(), Failure> {
+    io::encode(mesh, &target.options, out)
+        .map_err(|e| Failure::internal(format!("cannot write {}: {e}", target.path.display())))
+}
+
+fn read_back(bytes: &[u8], target: &Target) -> Result<Loaded, Failure> {
+    let name = (!is_stream(&target.path)).then_some(target.path.as_path());
+    io::read_bytes(bytes, Some(target.options.format), name)
+        .map_err(|e| Failure::internal(format!("the written file does not read back: {e}")))
+}
+
+fn entry(target: &Target, bytes: &[u8]) -> OutputEntry {
+    OutputEntry {
+        path: if is_stream(&target.path) { "standard output".into() } else { target.path.display().to_string() },
+        format: target.options.format.to_string(),
+        bytes: bytes.len() as u64,
+        sha256: sha256(bytes),
+        unit: target.options.unit.map(|unit| unit.to_string()),
+        validity: None,
+    }
+}
+
+/// Writes `bytes` to standard output.
+pub fn write_stream(bytes: &[u8]) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(bytes)
+        .and_then(|()| out.flush())
+        .map_err(|e| Failure::internal(format!("cannot write to standard output: {}", plain_reason(&e))))
+}

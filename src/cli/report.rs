@@ -1,0 +1,194 @@
+//! The report: one JSON object a run, the same for every verb.
+
+use std::path::Path;
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::args::CommonArgs;
+use super::exit::{Exit, Failure};
+use super::input::is_stream;
+use crate::io;
+use crate::mesh::Validity;
+use crate::pipeline::{Plan, Report, StageTime};
+
+/// Raised when a field changes its meaning or goes away; new fields do not raise it.
+pub const SCHEMA: u32 = 1;
+
+/// The account of one run of the program.
+#[derive(Debug, Serialize)]
+pub struct RunReport {
+    /// Version of this layout.
+    pub schema: u32,
+    /// `meshwright`.
+    pub tool: &'static str,
+    /// Version of the program.
+    pub version: &'static str,
+    /// The verb.
+    pub verb: &'static str,
+    /// Exit status of the process.
+    pub exit: u8,
+    /// Why there is no result, if so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<Failure>,
+    /// Options after defaults were filled in.
+    pub options: serde_json::Value,
+    /// The inputs, in the order given.
+    pub inputs: Vec<InputEntry>,
+    /// The estimate, where one was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plan: Option<Plan>,
+    /// What the pipeline found and did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pipeline: Option<Report>,
+    /// The written file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub output: Option<OutputEntry>,
+    /// Sentences a user should read.
+    pub warnings: Vec<String>,
+    /// Wall-clock seconds of each stage, in order.
+    pub stages: Vec<StageTime>,
+    /// Wall-clock seconds of the whole run.
+    pub seconds: f64,
+    /// Largest resident memory, where the system tells it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak_memory_bytes: Option<u64>,
+}
+
+/// One input in the report.
+#[derive(Debug, Clone, Serialize)]
+pub struct InputEntry {
+    /// The path as given.
+    pub path: String,
+    /// Its name in the expression, for `csg`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// The format it was read as.
+    pub format: String,
+    /// Size of the file.
+    pub bytes: u64,
+    /// SHA-256 of the file.
+    pub sha256: String,
+    /// The unit the file carries.
+    pub unit: Option<String>,
+    /// Its objects.
+    pub parts: Vec<PartEntry>,
+    /// What the reader found odd.
+    pub warnings: Vec<String>,
+    /// Its state as read.
+    pub validity: Option<Validity>,
+}
+
+/// An object within a file.
+#[derive(Debug, Clone, Serialize)]
+pub struct PartEntry {
+    /// Its name.
+    pub name: String,
+    /// Its triangles.
+    pub triangles: usize,
+}
+
+/// The output in the report.
+#[derive(Debug, Clone, Serialize)]
+pub struct OutputEntry {
+    /// The path as given.
+    pub path: String,
+    /// The format it was written in.
+    pub format: String,
+    /// Size of the file.
+    pub bytes: u64,
+    /// SHA-256 of the file.
+    pub sha256: String,
+    /// The unit of its numbers, where known.
+    pub unit: Option<String>,
+    /// Its state, read back from the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub validity: Option<Validity>,
+}
+
+impl RunReport {
+    /// An empty report of `verb`.
+    pub fn new(verb: &'static str) -> Self {
+        Self {
+            schema: SCHEMA,
+            tool: env!("CARGO_PKG_NAME"),
+            version: env!("CARGO_PKG_VERSION"),
+            verb,
+            exit: Exit::Internal.code(),
+            error: None,
+            options: serde_json::Value::Null,
+            inputs: Vec::new(),
+            plan: None,
+            pipeline: None,
+            output: None,
+            warnings: Vec::new(),
+            stages: Vec::new(),
+            seconds: 0.0,
+            peak_memory_bytes: None,
+        }
+    }
+
+    /// Runs `work` and notes how long it took under `stage`.
+    pub fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
+        let start = Instant::now();
+        let result = work(self);
+        self.stages.push(StageTime { stage, seconds: start.elapsed().as_secs_f64() });
+        result
+    }
+
+    /// Fills in how the run ended.
+    pub fn close(&mut self, outcome: &Result<Exit, Failure>, start: Instant) {
+        match outcome {
+            Ok(exit) => self.exit = exit.code(),
+            Err(failure) => {
+                self.exit = failure.exit.code();
+                self.error = Some(failure.clone());
+            }
+        }
+        self.seconds = start.elapsed().as_secs_f64();
+        self.peak_memory_bytes = peak_memory();
+    }
+
+    /// Writes the report where `--json` and `--report` want it.
+    pub fn emit(&self, common: &CommonArgs) -> Result<(), Failure> {
+        if !common.json && common.report.is_none() {
+            return Ok(());
+        }
+        let mut text = serde_json::to_string_pretty(self)
+            .map_err(|e| Failure::internal(format!("the report cannot be written as JSON: {e}")))?;
+        text.push('\n');
+        if common.json {
+            super::output::write_stream(text.as_bytes())?;
+        }
+        if let Some(path) = &common.report {
+            io::save_bytes(path, |out| out.write_all(text.as_bytes()))
+                .map_err(|e| Failure::usage(format!("cannot write the report {}: {e}", path.display())))?;
+        }
+        Ok(())
+    }
+}
+
+/// Refuses reports that would collide with other data.
+pub fn check_report_target(common: &CommonArgs, inputs: &[&Path], output: Option<&Path>) -> Result<(), Failure> {
+    if common.json && output.is_some_and(is_stream) {
+        return Err(Failure::usage("--json and `-o -` both want standard output")
+            .hint("--report FILE.json writes the report to a file"));
+    }
+    let Some(report) = &common.report else { return Ok(()) };
+    if is_stream(report) {
+        return Err(Failure::usage("--report wants a file").hint("--json writes the report to standard output"));
+    }
+    let taken = inputs.iter().copied().chain(output).any(|path| super::output::same_file(path, report));
+    if taken {
+        return Err(Failure::usage(format!("--report {} is also an input or the output", report.display())));
+    }
+    super::output::check_folder(report)
+}
+
+/// Peak resident memory of this process, bytes; Linux only.
+pub fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 1024)
+}

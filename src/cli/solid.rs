@@ -1,0 +1,186 @@
+//! What `repair`, the booleans and `csg` share: from files to one verified file.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use super::args::SolidArgs;
+use super::exit::{Exit, Failure};
+use super::input::{self, Input};
+use super::length::Scale;
+use super::output::{Target, write_verified};
+use super::report::RunReport;
+use super::session::Session;
+use super::{limits, summary, words};
+use crate::io::{Loaded, Unit};
+use crate::ldi::Expression;
+use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
+use crate::pipeline::{self, Options, VoxelSize};
+
+/// Meshes and what is to be made of them.
+pub struct Job<'a> {
+    /// The operands' files, in order.
+    pub paths: Vec<&'a Path>,
+    /// The operands' names, for `csg`.
+    pub names: Vec<String>,
+    /// The result in terms of the operands.
+    pub expression: Expression,
+    /// The flags.
+    pub args: &'a SolidArgs,
+}
+
+/// Runs the pipeline from file to file.
+pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
+    let args = job.args;
+    let mut target = args.output.as_deref().map(|path| Target::new(path, &args.writing, &job.paths)).transpose()?;
+    let mut inputs = report.timed("read", |_| input::read_all(&job.paths, &args.reading, session))?;
+    for (input, name) in inputs.iter_mut().zip(&job.names) {
+        input.entry.name = Some(name.clone());
+    }
+    let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
+    let options = options(args, unit, &inputs)?;
+    report.options = resolved(args, unit, &options);
+    report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
+    match &mut target {
+        Some(target) if !args.plan => {
+            target.set_unit(unit);
+            make(job, &inputs, &options, target, session, report)
+        }
+        _ => plan(inputs, &options, unit, args, report),
+    }
+}
+
+fn options(args: &SolidArgs, unit: Option<Unit>, inputs: &[Input]) -> Result<Options, Failure> {
+    let bounds = inputs.iter().filter_map(|input| input.loaded.mesh.bounds()).reduce(|a, b| a.union(&b));
+    let diagonal = bounds.as_ref().map_or(0.0, Bounds::diagonal);
+    let voxel = match &args.voxel {
+        Some(length) => VoxelSize::Length(length.resolve(&Scale { unit, diagonal, voxel: None })?),
+        None => VoxelSize::Along(args.resolution),
+    };
+    Ok(Options {
+        orient: args.orient.into(),
+        rule: args.vote.into(),
+        collapse: !args.no_collapse,
+        max_memory: args.max_memory,
+        ..Options::new(voxel)
+    })
+}
+
+/// The options as the report states them, after defaults.
+fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_json::Value {
+    let (resolution, voxel) = match options.voxel {
+        VoxelSize::Along(n) => (Some(n), None),
+        VoxelSize::Length(length) => (None, Some(length)),
+    };
+    json!({
+        "resolution": resolution,
+        "voxel": voxel,
+        "voxel_as_given": args.voxel.map(|length| length.to_string()),
+        "unit": unit.map(|unit| unit.to_string()),
+        "orient": format!("{:?}", options.orient).to_lowercase(),
+        "vote": options.rule,
+        "supersampling": options.supersampling,
+        "collapse": options.collapse,
+        "threads": rayon::current_num_threads(),
+        "max_memory_bytes": options.max_memory,
+        "timeout_seconds": args.common.timeout.map(|timeout| timeout.as_secs_f64()),
+    })
+}
+
+fn failure(error: &pipeline::Error, inputs: &[Input], unit: Option<Unit>, args: &SolidArgs) -> Failure {
+    let labels: Vec<String> = inputs.iter().map(|input| input.label.clone()).collect();
+    let unit = unit.map(|unit| unit.to_string());
+    Failure::pipeline(error, &labels, unit.as_deref(), args.voxel.is_some())
+}
+
+fn plan(
+    mut inputs: Vec<Input>,
+    options: &Options,
+    unit: Option<Unit>,
+    args: &SolidArgs,
+    report: &mut RunReport,
+) -> Result<Exit, Failure> {
+    let meshes: Vec<TriMesh> = inputs.iter_mut().map(|input| std::mem::take(&mut input.loaded.mesh)).collect();
+    // The cap is judged below, after the estimate was shown.
+    let uncapped = Options { max_memory: None, ..options.clone() };
+    let plan = pipeline::plan(&meshes, &uncapped).map_err(|e| failure(&e, &inputs, unit, args))?;
+    report.plan = Some(plan);
+    if !args.common.json {
+        let unit = unit.map(|unit| unit.to_string());
+        let text = summary::table(&summary::plan(&plan, unit.as_deref()));
+        super::output::write_stream(text.as_bytes())?;
+    }
+    pipeline::plan(&meshes, options).map_err(|e| failure(&e, &inputs, unit, args))?;
+    match options.max_memory {
+        Some(cap) if plan.memory > cap => Err(Failure::new(
+            Exit::Memory,
+            format!(
+                "about {} of memory would be needed, and --max-memory allows {}",
+                words::bytes(plan.memory),
+                words::bytes(cap)
+            ),
+        )
+        .hint("a lower --resolution or a larger --voxel")),
+        _ => Ok(Exit::Done),
+    }
+}
+
+fn make(
+    job: &Job<'_>,
+    inputs: &[Input],
+    options: &Options,
+    target: &Target,
+    session: &Session,
+    report: &mut RunReport,
+) -> Result<Exit, Failure> {
+    let args = job.args;
+    let unit = target.options.unit;
+    report.timed("examine", |report| {
+        session.progress.stage("examine")?;
+        for (input, entry) in inputs.iter().zip(&mut report.inputs) {
+            entry.validity = Some(input::examine(&input.loaded, session)?);
+        }
+        Ok::<(), Failure>(())
+    })?;
+    let meshes: Vec<TriMesh> = inputs.iter().map(|input| input.loaded.mesh.clone()).collect();
+    let outcome = pipeline::boolean(&meshes, &job.expression, options, &session.progress)
+        .map_err(|e| failure(&e, inputs, unit, args))?;
+    drop(meshes);
+    report.stages.extend(outcome.report.stages.iter().cloned());
+    report.warnings.extend(outcome.report.warnings.iter().cloned());
+    report.pipeline = Some(outcome.report);
+    let (entry, validity) = report.timed("write and verify", |_| {
+        write_verified(target, &outcome.mesh, session, |read| judge(read, &outcome.mesh, session))
+    })?;
+    report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
+    let broken = limits::broken(report, options.max_memory);
+    report.warnings.extend(broken.iter().cloned());
+    report.seconds = session.start.elapsed().as_secs_f64();
+    report.peak_memory_bytes = super::report::peak_memory();
+    session.clear_bar();
+    let name = unit.map(|unit| unit.to_string());
+    summary::say(session, report, name.as_deref());
+    Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+}
+
+/// Whether the file as read back holds the mesh that was made, and keeps the program's promise.
+fn judge(read: &Loaded, made: &TriMesh, session: &Session) -> Result<Validity, Failure> {
+    check_same(&read.mesh, made)?;
+    let options = ValidateOptions { self_intersections: true, weld: input::is_soup_format(read.format) };
+    let validity = validate(&read.mesh, &options, &session.progress)?;
+    if validity.is_valid() {
+        return Ok(validity);
+    }
+    Err(Failure::new(
+        Exit::Limit,
+        format!("the result is not a valid solid ({}); it was not written", validity.problems().join("; ")),
+    )
+    .hint("another --resolution or --voxel; and please report it: this should not happen"))
+}
+
+/// Whether two meshes have the same triangles, in the same order, at exactly the same places.
+fn check_same(read: &TriMesh, made: &TriMesh) -> Result<(), Failure> {
+    let same = read.triangles.len() == made.triangles.len()
+        && (0..made.triangles.len()).all(|t| read.corners(t) == made.corners(t));
+    if same { Ok(()) } else { Err(Failure::internal("the file does not hold what was written to it; it was removed")) }
+}

@@ -1,0 +1,270 @@
+//! What a run says to a person: a few aligned lines, made from the report.
+
+use super::input::Input;
+use super::report::{InputEntry, RunReport};
+use super::session::Session;
+use super::words::{self, UnitName};
+use crate::io::{Loaded, Unit};
+use crate::mesh::Validity;
+use crate::pipeline::{Plan, Report};
+
+/// A label and what stands behind it; rows of one block are aligned.
+pub type Row = (&'static str, String);
+
+/// The rows as aligned lines. Rows that follow a row of the same label go without it.
+pub fn table(rows: &[Row]) -> String {
+    let width = rows.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
+    let mut before = "";
+    rows.iter().fold(String::new(), |mut text, (label, value)| {
+        let shown = if *label == before { "" } else { label };
+        before = label;
+        text.push_str(format!("{shown:width$}  {value}").trim_end());
+        text.push('\n');
+        text
+    })
+}
+
+/// Says what was wrong, what was done and what came out, and then the warnings.
+pub fn say(session: &Session, report: &RunReport, unit: UnitName<'_>) {
+    session.say(table(&rows(report, unit)).trim_end());
+    for warning in &report.warnings {
+        session.say(&format!("note: {warning}"));
+    }
+    if let Some(pipeline) = report.pipeline.as_ref().filter(|_| session.verbose) {
+        session.say(table(&details(report, pipeline, unit)).trim_end());
+    }
+}
+
+fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for input in &report.inputs {
+        rows.push(("input", described(input)));
+        rows.push(("wrong", wrong(input)));
+    }
+    if let Some(pipeline) = &report.pipeline {
+        rows.push(("done", done(pipeline).join("; ")));
+        rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
+        rows.extend(thin(pipeline, unit).map(|text| ("thin", text)));
+    }
+    if let Some((output, validity)) = report.output.as_ref().and_then(|o| Some((o, o.validity.as_ref()?))) {
+        rows.push(("result", format!("{}: {}", output.path, solid(validity, unit))));
+        rows.push(("", "closed, oriented, without self-intersections; checked on the written file".into()));
+    }
+    let memory = report.peak_memory_bytes.map_or(String::new(), |bytes| format!(", {} of memory", words::bytes(bytes)));
+    rows.push(("time", format!("{}{memory}", words::seconds(report.seconds))));
+    rows
+}
+
+fn described(input: &InputEntry) -> String {
+    let mut text = format!("{}: ", input.path);
+    if let Some(name) = &input.name {
+        text = format!("{name} = {text}");
+    }
+    let triangles = input.validity.as_ref().map_or(0, |validity| validity.triangles);
+    text.push_str(&words::plural(triangles, "triangle"));
+    if input.parts.len() > 1 {
+        text.push_str(&format!(" in {}", words::plural(input.parts.len(), "object")));
+    }
+    if let Some(bounds) = input.validity.as_ref().and_then(|validity| validity.bounds) {
+        text.push_str(&format!(", {}", words::size(extent(bounds), input.unit.as_deref())));
+    }
+    text
+}
+
+fn wrong(input: &InputEntry) -> String {
+    match &input.validity {
+        Some(validity) if validity.is_valid() => "nothing: it is a closed, oriented solid".into(),
+        Some(validity) => sentence(&validity.problems()),
+        None => "not examined".into(),
+    }
+}
+
+/// Sentences of problems as one: full stops become semicolons.
+fn sentence(problems: &[String]) -> String {
+    problems.iter().map(|problem| problem.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
+}
+
+fn done(pipeline: &Report) -> Vec<String> {
+    let sum = |field: fn(&crate::orient::OrientReport) -> usize| pipeline.orient.iter().map(field).sum::<usize>();
+    let mut parts = Vec::new();
+    let mut add = |n: usize, word: &str, what: &str| {
+        if n > 0 {
+            parts.push(format!("{} {what}", words::plural(n, word)));
+        }
+    };
+    add(sum(|o| o.degenerate_dropped), "triangle", "without area dropped");
+    add(sum(|o| o.duplicates_dropped), "repeated triangle", "dropped");
+    add(sum(|o| o.both_sided), "triangle", "present in both directions counted once");
+    add(sum(|o| o.flipped_in_patches), "triangle", "turned over to agree with the neighbours");
+    add(sum(|o| o.flipped_patches), "patch", "turned over as a whole");
+    if pipeline.ldi.silent_rays > 0 {
+        let share = words::percent(pipeline.ldi.silent_rays, pipeline.ldi.rays);
+        parts.push(format!("{share} of the rays met a hole or a crack, and others decided in their place"));
+    }
+    parts.push("the surface was built anew".into());
+    parts
+}
+
+fn voxel(voxel: f64, dims: [i32; 3], unit: UnitName<'_>) -> String {
+    let [x, y, z] = dims;
+    format!("{} ({x} x {y} x {z} of them)", words::length(voxel, unit))
+}
+
+/// Walls that the voxel size may not hold, where the evidence is more than rays that graze an edge.
+fn thin(pipeline: &Report, unit: UnitName<'_>) -> Option<String> {
+    let thin = &pipeline.thin;
+    let keeps = thin.voxel_that_keeps.filter(|keeps| *keeps > 0.0 && *keeps < pipeline.voxel)?;
+    let share = words::percent(thin.thin_spans, thin.spans);
+    let typed = words::rounded_down(keeps);
+    let keeps = words::with_unit(&typed, unit).replace(' ', "");
+    Some(format!("{share} of the walls are under 2 voxels thick and may have suffered; --voxel {keeps} would keep them"))
+}
+
+fn solid(validity: &Validity, unit: UnitName<'_>) -> String {
+    let mut text = format!(
+        "{}, {}",
+        words::plural(validity.triangles, "triangle"),
+        words::plural(validity.bodies, "closed surface")
+    );
+    if let Some(genus) = validity.genus.filter(|genus| *genus > 0) {
+        text.push_str(&format!(" with {}", words::plural(genus as usize, "tunnel")));
+    }
+    text.push_str(&format!(", volume {}", words::volume(validity.volume, unit)));
+    text
+}
+
+/// What `-v` adds: the stages, and where the votes were close.
+fn details(report: &RunReport, pipeline: &Report, unit: UnitName<'_>) -> Vec<Row> {
+    let mut rows: Vec<Row> = Vec::new();
+    let vote = &pipeline.vote;
+    rows.push((
+        "rays",
+        format!(
+            "{} with {}, at most {} on one; {} silent",
+            words::plural(pipeline.ldi.rays, "ray"),
+            words::plural(pipeline.ldi.hits, "crossing"),
+            words::count(pipeline.ldi.layers),
+            words::count(pipeline.ldi.silent_rays)
+        ),
+    ));
+    rows.push((
+        "doubt",
+        format!("{} of {}", words::count(vote.doubtful), words::plural(vote.voxels, "voxel near the surface").replace("surfaces", "surface")),
+    ));
+    for region in vote.doubtful_regions.iter().take(5) {
+        let place = |p: [f64; 3]| p.map(words::number).join(" ");
+        let text = format!(
+            "{} from {} to {}",
+            words::plural(region.voxels, "voxel"),
+            place(region.min),
+            words::with_unit(&place(region.max), unit)
+        );
+        rows.push(("doubt", text));
+    }
+    for stage in &report.stages {
+        rows.push(("stage", format!("{:8.3} s  {}", stage.seconds, stage.stage)));
+    }
+    rows
+}
+
+/// The rows of `--plan`.
+pub fn plan(plan: &Plan, unit: UnitName<'_>) -> Vec<Row> {
+    vec![
+        ("voxel", voxel(plan.voxel, plan.dims, unit)),
+        ("surface", format!("about {}", words::plural(plan.voxels_near_surface as usize, "voxel"))),
+        ("result", format!("about {}", words::plural(plan.triangles as usize, "triangle"))),
+        ("memory", format!("about {}", words::bytes(plan.memory))),
+        ("time", format!("about {} on one core", words::seconds(plan.seconds))),
+    ]
+}
+
+/// As many objects of a file are listed by name.
+const LISTED_OBJECTS: usize = 8;
+
+/// The rows of `inspect`.
+pub fn inspection(input: &Input, validity: &Validity, unit: Option<Unit>) -> Vec<Row> {
+    let name = unit.map(|unit| unit.to_string());
+    let name = name.as_deref();
+    let mut rows = vec![
+        ("file", format!("{}, {}, {}", input.label, input.entry.format, words::bytes(input.entry.bytes))),
+        ("unit", name.map_or("not stated in the file".into(), str::to_string)),
+    ];
+    let parts = &input.entry.parts;
+    let listed = if parts.len() > 1 { parts.len().min(LISTED_OBJECTS) } else { 0 };
+    for part in &parts[..listed] {
+        let called = if part.name.is_empty() { "(no name)" } else { &part.name };
+        rows.push(("objects", format!("{called}: {}", words::plural(part.triangles, "triangle"))));
+    }
+    if listed > 0 && parts.len() > listed {
+        rows.push(("objects", format!("and {} more", words::count(parts.len() - listed))));
+    }
+    if let Some([min, max]) = validity.bounds {
+        let place = |p: [f64; 3]| p.map(words::number).join(" ");
+        rows.push(("size", words::size(extent([min, max]), name)));
+        rows.push(("box", format!("{} to {}", place(min), place(max))));
+    }
+    let vertices = match validity.unused_vertices {
+        0 => words::count(validity.vertices),
+        unused => format!("{}, {} of them unused", words::count(validity.vertices), words::count(unused)),
+    };
+    let yes_no = |yes: bool| if yes { "yes" } else { "no" };
+    let area = match name {
+        Some(unit) => format!("{} {unit}²", words::number(validity.area)),
+        None => words::number(validity.area),
+    };
+    rows.extend([
+        ("triangles", words::count(validity.triangles)),
+        ("vertices", vertices),
+        ("surfaces", words::count(validity.bodies)),
+        ("genus", validity.genus.map_or("(not a closed manifold)".into(), |genus| genus.to_string())),
+        ("area", area),
+        ("volume", words::volume(validity.volume, name)),
+        ("closed", yes_no(validity.is_closed()).into()),
+        ("oriented", yes_no(validity.is_oriented_manifold()).into()),
+        ("valid", yes_no(validity.is_valid()).into()),
+    ]);
+    rows.extend(validity.problems().into_iter().map(|problem| ("problems", problem)));
+    rows
+}
+
+fn extent([min, max]: [[f64; 3]; 2]) -> [f64; 3] {
+    std::array::from_fn(|axis| max[axis] - min[axis])
+}
+
+/// Sizes and places that are rarely meant.
+pub fn size_doubts(loaded: &Loaded, unit: Option<Unit>) -> Vec<String> {
+    let Some(bounds) = loaded.mesh.bounds() else { return Vec::new() };
+    let mut doubts = Vec::new();
+    let diagonal = bounds.diagonal();
+    match unit.map(|unit| diagonal * unit.metres()) {
+        Some(metres) if !(1e-4..1e3).contains(&metres) => doubts.push(format!(
+            "the diagonal is {} m, which is rarely meant: is the unit right?",
+            words::number(metres)
+        )),
+        None if !(1e-2..1e5).contains(&diagonal) => doubts.push(format!(
+            "the diagonal is {}, which is rarely meant in millimetres: --unit says what the numbers are",
+            words::number(diagonal)
+        )),
+        _ => {}
+    }
+    let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
+    // Single precision resolves 1 in 2^24; below a thousand steps across, shapes suffer visibly.
+    if diagonal > 0.0 && farthest / diagonal > 16_000.0 {
+        doubts.push("it lies so far from the origin that single-precision formats (STL, GLB) cannot hold its details".into());
+    }
+    if bounds.size().min_element() == 0.0 {
+        doubts.push("it is flat: it has no extent along one axis".into());
+    }
+    doubts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_aligned_and_repeated_labels_left_out() {
+        let rows: Vec<Row> = vec![("a", "one".into()), ("long", "two".into()), ("long", "three".into())];
+        assert_eq!(table(&rows), "a     one\nlong  two\n      three\n");
+    }
+}

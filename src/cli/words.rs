@@ -1,0 +1,169 @@
+//! Numbers and quantities in words.
+
+/// The name of the model's unit, where it has one.
+pub type UnitName<'a> = Option<&'a str>;
+
+/// A whole number with separators: `86,412`.
+pub fn count(n: usize) -> String {
+    let digits = n.to_string();
+    let mut out = String::with_capacity(digits.len() * 4 / 3);
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    out
+}
+
+/// `1 triangle`, `2,000 triangles`; the word is given in the singular.
+pub fn plural(n: usize, word: &str) -> String {
+    let plural = match word {
+        "body" => "bodies".to_string(),
+        "vertex" => "vertices".to_string(),
+        "patch" => "patches".to_string(),
+        word => format!("{word}s"),
+    };
+    format!("{} {}", count(n), if n == 1 { word } else { &plural })
+}
+
+/// Four significant digits, without an exponent where a person would write none.
+pub fn number(x: f64) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return format!("{}", x + 0.0);
+    }
+    let magnitude = x.abs().log10().floor();
+    if !(-5.0..9.0).contains(&magnitude) {
+        return format!("{x:.3e}");
+    }
+    let decimals = (3.0 - magnitude).max(0.0) as usize;
+    let text = format!("{x:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
+    let (sign, whole) = whole.strip_prefix('-').map_or(("", whole), |w| ("-", w));
+    let whole = whole.parse().map_or_else(|_| whole.to_string(), count);
+    if fraction.is_empty() { format!("{sign}{whole}") } else { format!("{sign}{whole}.{fraction}") }
+}
+
+/// Two significant digits, rounded up, as something one can type: `0.42`, `1300`.
+pub fn rounded_up(x: f64) -> String {
+    significant(x, f64::ceil)
+}
+
+/// Two significant digits, rounded down, as something one can type.
+pub fn rounded_down(x: f64) -> String {
+    significant(x, f64::floor)
+}
+
+fn significant(x: f64, round: fn(f64) -> f64) -> String {
+    if !(x.is_finite() && x > 0.0) {
+        return x.to_string();
+    }
+    let exponent = x.log10().floor() as i32 - 1;
+    // A number such as 0.3 must not become 0.31 by the error of the division.
+    let digits = (x / 10_f64.powi(exponent) * 1e6).round() / 1e6;
+    format!("{}e{exponent}", round(digits)).parse::<f64>().map_or_else(|_| x.to_string(), |v| v.to_string())
+}
+
+/// A number with the unit behind it, where there is one.
+pub fn with_unit(number: &str, unit: UnitName<'_>) -> String {
+    match unit {
+        Some(unit) => format!("{number} {unit}"),
+        None => number.to_string(),
+    }
+}
+
+/// A length.
+pub fn length(x: f64, unit: UnitName<'_>) -> String {
+    with_unit(&number(x), unit)
+}
+
+/// `97 x 80 x 104 mm`.
+pub fn size(size: [f64; 3], unit: UnitName<'_>) -> String {
+    with_unit(&size.map(number).join(" x "), unit)
+}
+
+/// A volume.
+pub fn volume(x: f64, unit: UnitName<'_>) -> String {
+    match unit {
+        Some(unit) => format!("{} {unit}³", number(x)),
+        None => number(x),
+    }
+}
+
+/// Bytes, in powers of 1000: `1.4 GB`.
+pub fn bytes(n: u64) -> String {
+    let mut value = n as f64;
+    for unit in ["bytes", "kB", "MB", "GB"] {
+        if value < 1000.0 {
+            return if unit == "bytes" { format!("{n} bytes") } else { format!("{value:.1} {unit}") };
+        }
+        value /= 1000.0;
+    }
+    format!("{value:.1} TB")
+}
+
+/// Seconds.
+pub fn seconds(s: f64) -> String {
+    if s < 100.0 { format!("{s:.2} s") } else { format!("{}:{:02} min", (s / 60.0) as u64, (s % 60.0) as u64) }
+}
+
+/// A share of a whole, in percent.
+pub fn percent(part: usize, whole: usize) -> String {
+    let share = 100.0 * part as f64 / whole.max(1) as f64;
+    if part > 0 && share < 0.01 { "under 0.01 %".into() } else { format!("{} %", number((share * 100.0).round() / 100.0)) }
+}
+
+/// `a, b and c`.
+pub fn list(parts: &[String]) -> String {
+    match parts {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_as_people_write_them() {
+        for (x, text) in [
+            (0.0, "0"),
+            (1.0, "1"),
+            (0.41309, "0.4131"),
+            (12.0, "12"),
+            (1234.6, "1,235"),
+            (-86412.3, "-86,412"),
+            (0.00012346, "0.0001235"),
+            (1e38, "1.000e38"),
+            (2.5e-9, "2.500e-9"),
+        ] {
+            assert_eq!(number(x), text);
+        }
+        assert_eq!([0, 7, 999, 1000, 1234567].map(count), ["0", "7", "999", "1,000", "1,234,567"]);
+    }
+
+    #[test]
+    fn suggestions_are_rounded_to_the_safe_side() {
+        assert_eq!(rounded_up(0.4131), "0.42");
+        assert_eq!(rounded_up(0.3), "0.3");
+        assert_eq!(rounded_up(1234.0), "1300");
+        assert_eq!(rounded_down(0.0999), "0.099");
+        assert_eq!(rounded_down(0.3), "0.3");
+    }
+
+    #[test]
+    fn small_words() {
+        assert_eq!(plural(1, "body"), "1 body");
+        assert_eq!(plural(2000, "triangle"), "2,000 triangles");
+        assert_eq!(bytes(999), "999 bytes");
+        assert_eq!(bytes(1_400_000_000), "1.4 GB");
+        assert_eq!(percent(1, 1_000_000), "under 0.01 %");
+        assert_eq!(percent(1, 3), "33.33 %");
+        assert_eq!(list(&["a".into(), "b".into(), "c".into()]), "a, b and c");
+        assert_eq!(seconds(0.5), "0.50 s");
+        assert_eq!(seconds(125.0), "2:05 min");
+    }
+}

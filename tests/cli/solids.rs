@@ -1,0 +1,175 @@
+//! `repair`, the booleans and `csg`, from file to file.
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::{assert_empty, folder, names_in, run_in};
+
+/// The validity of a written file, as `inspect` sees it; it must have no defect at all.
+#[track_caller]
+fn solid(folder: &TempDir, name: &str) -> Value {
+    let json = run_in(folder, &format!("inspect OUT/{name} --json --fail-on any")).exits(0).json();
+    json["inputs"][0]["validity"].clone()
+}
+
+#[track_caller]
+fn assert_volume(validity: &Value, expected: f64, tolerance: f64) {
+    let volume = validity["volume"].as_f64().expect("a number");
+    assert!((volume / expected - 1.0).abs() < tolerance, "volume {volume} instead of {expected}");
+}
+
+#[test]
+fn every_broken_sample_comes_back_as_a_valid_solid() {
+    for (name, volume, tolerance, bodies) in [
+        ("torus.ply", 1824.06, 0.01, 1),
+        ("noisy_cube.off", 1009.1, 0.02, 1),
+        ("hollow_ball.stl", 3207.83, 0.02, 2),
+        ("overlapping_boxes.obj", 1328.0, 0.02, 1),
+        ("open_cube.off", 1000.0, 0.03, 1),
+        ("cracked_ball.stl", 4120.0, 0.03, 1),
+        ("inside_out_cube.stl", 1000.0, 0.02, 1),
+        ("flipped_patches.ply", 4120.0, 0.02, 1),
+        ("doubled_faces.off", 4120.0, 0.02, 1),
+        ("touching_boxes.obj", 2000.0, 0.02, 1),
+        ("monkey_saddle.off", 1200.0, 0.02, 1),
+    ] {
+        let folder = folder();
+        run_in(&folder, &format!("repair testdata/{name} -o OUT/out.stl --resolution 64")).exits(0);
+        let validity = solid(&folder, "out.stl");
+        assert_volume(&validity, volume, tolerance);
+        assert_eq!(validity["bodies"], bodies, "{name}");
+        assert_eq!(names_in(folder.path()), ["out.stl"], "{name}");
+    }
+}
+
+#[test]
+fn the_broken_mug_comes_back_in_one_piece() {
+    let folder = folder();
+    let said = run_in(&folder, "repair testdata/broken_mug.obj -o OUT/mug.3mf --resolution 128 --unit mm").exits(0).stderr;
+    let validity = solid(&folder, "mug.3mf");
+    assert_eq!((&validity["bodies"], &validity["genus"]), (&1.into(), &1.into()), "a mug is one body with one tunnel");
+    for label in ["input", "wrong", "done", "voxel", "result", "time"] {
+        assert!(said.lines().any(|line| line.starts_with(label)), "`{label}` is missing in:\n{said}");
+    }
+    assert!(said.contains(" mm³"), "{said}");
+}
+
+#[test]
+fn output_is_the_same_in_every_format() {
+    let folder = folder();
+    for name in ["a.stl", "a.obj", "a.ply", "a.off", "a.glb", "a.3mf"] {
+        run_in(&folder, &format!("repair testdata/open_cube.off -o OUT/{name} --resolution 32")).exits(0);
+        assert_volume(&solid(&folder, name), 1000.0, 0.05);
+    }
+}
+
+#[test]
+fn booleans_of_boxes_have_the_volumes_of_sets() {
+    // 10 x 10 x 10 at the origin, and 20 x 10 x 10 made of two touching boxes over it.
+    let (a, b) = ("testdata/inside_out_cube.stl", "testdata/touching_boxes.obj");
+    let folder = folder();
+    for (arguments, volume) in [
+        (format!("union {a} {b}"), 2000.0),
+        (format!("intersection {a} {b}"), 1000.0),
+        (format!("difference {b} {a}"), 1000.0),
+        (format!("csg b-a a={a} b={b}"), 1000.0),
+        (format!("csg a^b a={a} b={b}"), 1000.0),
+        (format!("csg (a|b)&(b-a) a={a} b={b}"), 1000.0),
+    ] {
+        run_in(&folder, &format!("{arguments} -o OUT/out.off --resolution 64")).exits(0);
+        assert_volume(&solid(&folder, "out.off"), volume, 0.02);
+    }
+}
+
+#[test]
+fn nothing_left_is_exit_4_and_no_file() {
+    let folder = folder();
+    let a = "testdata/torus.ply";
+    run_in(&folder, &format!("difference {a} {a} -o OUT/out.stl --resolution 32")).exits(4).says(&["error: "]);
+    assert_empty(&folder);
+    let said = run_in(&folder, "repair testdata/open_sheet.obj -o OUT/out.stl --resolution 64").exits(4).stderr;
+    assert!(said.starts_with("error: ") && said.contains("enclose"), "{said}");
+    assert_empty(&folder);
+}
+
+#[test]
+fn walls_far_below_the_voxel_are_told() {
+    let folder = folder();
+    let run = run_in(&folder, "repair testdata/thin_plate.stl -o OUT/out.stl --resolution 64");
+    assert!(matches!(run.status, 3 | 4), "{}: {}", run.status, run.stderr);
+    assert!(run.stderr.contains("voxel"), "{}", run.stderr);
+    assert_eq!(folder.path().join("out.stl").exists(), run.status == 3, "{}", run.stderr);
+    run_in(&folder, "repair testdata/thin_plate.stl -o OUT/fine.stl --voxel 0.04 --timeout 60s").exits(0);
+    assert_volume(&solid(&folder, "fine.stl"), 160.0, 0.02);
+}
+
+#[test]
+fn threads_do_not_change_a_byte() {
+    let folder = folder();
+    for threads in [1, 2, 5] {
+        let arguments = "repair testdata/broken_mug.obj --resolution 64 -o";
+        run_in(&folder, &format!("{arguments} OUT/{threads}.stl --threads {threads}")).exits(0);
+    }
+    let bytes = |threads: u32| std::fs::read(folder.path().join(format!("{threads}.stl"))).unwrap();
+    assert!(bytes(1) == bytes(2) && bytes(1) == bytes(5), "the bytes differ between numbers of threads");
+}
+
+#[test]
+fn a_plan_says_what_it_would_cost_and_does_nothing() {
+    let folder = folder();
+    let text = run_in(&folder, "repair testdata/torus.ply --plan --resolution 100").exits(0).text();
+    for label in ["voxel", "result", "memory", "time"] {
+        assert!(text.lines().any(|line| line.starts_with(label)), "`{label}` is missing in:\n{text}");
+    }
+    let json = run_in(&folder, "repair testdata/torus.ply -o OUT/a.stl --plan --json").exits(0).json();
+    assert!(json["plan"]["memory"].as_u64().unwrap() > 0);
+    assert!(json["plan"]["triangles"].as_u64().unwrap() > 0);
+    assert_empty(&folder);
+}
+
+#[test]
+fn the_report_is_json_and_complete() {
+    let folder = folder();
+    let arguments = "csg a-b a=testdata/noisy_cube.off b=testdata/open_cube.off -o OUT/a.stl --voxel 2% --unit mm";
+    let run = run_in(&folder, &format!("{arguments} --json --report OUT/r.json -q"));
+    let json = run.json();
+    let file: Value = serde_json::from_slice(&std::fs::read(folder.path().join("r.json")).unwrap()).unwrap();
+    assert_eq!(json, file, "--json and --report differ");
+    assert_eq!(json["exit"], run.status);
+    assert_eq!((&json["verb"], &json["inputs"][1]["name"]), (&"csg".into(), &"b".into()));
+    assert_eq!(json["options"]["unit"], "mm");
+    assert!(json["options"]["voxel"].as_f64().unwrap() > 0.0);
+    assert!(json["seconds"].as_f64().unwrap() > 0.0);
+    assert!(json["stages"].as_array().unwrap().len() > 3);
+    if run.status == 0 {
+        assert_eq!(run.stderr, "", "-q and yet words");
+        assert_eq!(json["output"]["validity"]["open_edges"], 0);
+    }
+}
+
+#[test]
+fn a_failed_run_reports_its_error() {
+    let folder = folder();
+    let run = run_in(&folder, "repair testdata/open_sheet.obj -o OUT/a.stl --resolution 32 --json").exits(4);
+    let json = run.json();
+    assert_eq!(json["exit"], 4);
+    assert!(json["error"]["message"].as_str().unwrap().len() > 10);
+    assert_eq!(json["output"], Value::Null);
+}
+
+#[test]
+fn no_progress_noise_when_nobody_watches() {
+    let folder = folder();
+    let run = run_in(&folder, "repair testdata/torus.ply -o OUT/a.stl --resolution 64 -v").exits(0);
+    assert!(!run.stderr.contains(['\r', '\u{1b}']), "{:?}", run.stderr);
+    assert!(run.stdout.is_empty());
+    assert_eq!(run_in(&folder, "repair testdata/torus.ply -o OUT/b.stl --resolution 64 -q").exits(0).stderr, "");
+}
+
+#[test]
+fn a_stream_carries_the_same_bytes_as_a_file() {
+    let folder = folder();
+    run_in(&folder, "repair testdata/open_cube.off -o OUT/a.ply --resolution 32").exits(0);
+    let streamed = run_in(&folder, "repair testdata/open_cube.off -o - --out-format ply --resolution 32").exits(0);
+    assert_eq!(streamed.stdout, std::fs::read(folder.path().join("a.ply")).unwrap());
+}

@@ -1,0 +1,103 @@
+//! Wrong usage: exit 2, one sentence, and nothing touched.
+
+use super::{assert_empty, folder, run, run_in, sample};
+
+#[test]
+fn help_lists_every_verb_and_every_exit_status() {
+    let help = run(&["--help"]).exits(0).text();
+    for word in ["repair", "union", "intersection", "difference", "csg", "inspect", "convert", "render", "130"] {
+        assert!(help.contains(word), "`{word}` is missing in:\n{help}");
+    }
+    assert!(run(&["repair", "--help"]).exits(0).text().contains("Make one closed, oriented solid"));
+    assert_eq!(run(&["--version"]).exits(0).text().trim(), concat!("meshwright ", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn wrong_usage_exits_with_2_and_a_sentence() {
+    let folder = folder();
+    for (arguments, words) in [
+        ("", "Usage"),
+        ("mend x.stl", "mend"),
+        ("repair testdata/torus.ply", "--output"),
+        ("repair testdata/torus.ply -o OUT/a.stl --resolution 64 --voxel 1", "cannot be used with"),
+        ("repair testdata/torus.ply -o OUT/a.stl --resolution 1", "--resolution"),
+        ("repair testdata/torus.ply -o OUT/a.stl --voxel 2h", "it is the voxel that is asked for"),
+        ("repair testdata/torus.ply -o OUT/a.stl --voxel 0.4mm", "needs the unit of the model"),
+        ("repair testdata/torus.ply -o OUT/a.stl --voxel furlong", "is not a length"),
+        ("repair testdata/torus.ply -o OUT/a.stl --unit furlong", "furlong"),
+        ("repair testdata/torus.ply -o OUT/a.stl --timeout soon", "is not a duration"),
+        ("repair testdata/torus.ply -o OUT/a.stl --max-memory lots", "is not a size"),
+        ("repair testdata/torus.ply -o OUT/a.stl --threads 0", "--threads"),
+        ("repair testdata/torus.ply -o OUT/a.step", "does not tell its format"),
+        ("repair testdata/torus.ply -o -", "no name that tells its format"),
+        ("repair testdata/torus.ply -o - --out-format stl --json", "both want standard output"),
+        ("repair testdata/torus.ply -o OUT/nowhere/a.stl", "nowhere"),
+        ("repair testdata/torus.ply -o OUT", "OUT"),
+        ("repair testdata/torus.ply -o OUT/a.stl --report OUT/a.stl", "also an input or the output"),
+        ("repair testdata/torus.ply -o OUT/a.stl --report -", "--report wants a file"),
+        ("repair testdata/torus.ply -o OUT/a.stl -q -v", "cannot be used with"),
+        ("union testdata/torus.ply -o OUT/a.stl", "2"),
+        ("union - - -o OUT/a.stl", "only once"),
+        ("inspect testdata/torus.ply --fail-on dust", "dust"),
+        ("render testdata/torus.ply -o OUT/a.png --width 0", "--width"),
+    ] {
+        let words = words.replace("OUT", folder.path().to_str().unwrap());
+        run_in(&folder, arguments).exits(2).says(&[&words]);
+        assert_empty(&folder);
+    }
+}
+
+#[test]
+fn errors_of_ours_are_an_error_line_and_a_hint_line() {
+    let folder = folder();
+    let said = run_in(&folder, "repair testdata/torus.ply -o OUT/a.stl --voxel 0.4mm").exits(2).stderr;
+    let lines: Vec<&str> = said.lines().collect();
+    assert_eq!(lines.len(), 2, "{said}");
+    assert!(lines[0].starts_with("error: "), "{said}");
+    assert!(lines[1].starts_with("hint: ") && lines[1].contains("--unit mm"), "{said}");
+}
+
+#[test]
+fn an_input_is_overwritten_only_with_force() {
+    let folder = folder();
+    let copy = folder.path().join("cube.off");
+    std::fs::copy(sample("open_cube.off"), &copy).unwrap();
+    let before = std::fs::read(&copy).unwrap();
+    for arguments in [
+        "repair OUT/cube.off -o OUT/cube.off",
+        "repair OUT/cube.off -o OUT/./cube.off",
+        "convert OUT/cube.off -o OUT/cube.off",
+        "union testdata/torus.ply OUT/cube.off -o OUT/cube.off",
+        "csg a|b a=testdata/torus.ply b=OUT/cube.off -o OUT/cube.off",
+        "render OUT/cube.off -o OUT/cube.off",
+    ] {
+        run_in(&folder, arguments).exits(2).says(&["is an input and would be overwritten", "--force"]);
+        assert_eq!(std::fs::read(&copy).unwrap(), before, "{arguments}");
+    }
+    run_in(&folder, "convert OUT/cube.off -o OUT/cube.off --force").exits(0);
+}
+
+#[test]
+fn errors_in_an_expression_point_at_the_column() {
+    let folder = folder();
+    let csg = |expression: &str| {
+        let out = folder.path().join("a.stl");
+        let (a, b) = (format!("a={}", sample("torus.ply").display()), format!("b={}", sample("torus.ply").display()));
+        run(&["csg", expression, &a, &b, "-o", out.to_str().unwrap()]).exits(2)
+    };
+    csg("a - (b | )").says(&["column 10", "expected a name or `(`", "\n  a - (b | )\n           ^\n"]);
+    csg("a + b").says(&["column 3", "an operator", "\n    ^\n"]);
+    csg("a | wheel & b").says(&["column 5", "no file is given for `wheel`", "the names given are a, b"]);
+    csg("a").says(&["the expression does not use `b`"]);
+    csg("").says(&["column 1"]);
+    assert_empty(&folder);
+}
+
+#[test]
+fn operands_of_csg_need_names() {
+    let folder = folder();
+    run_in(&folder, "csg a testdata/torus.ply -o OUT/a.stl").exits(2).says(&["is not NAME=FILE"]);
+    run_in(&folder, "csg a a=x.stl a=y.stl -o OUT/a.stl").exits(2).says(&["`a` is given twice"]);
+    run_in(&folder, "csg a 1a=x.stl -o OUT/a.stl").exits(2).says(&["is not a name"]);
+    assert_empty(&folder);
+}
