@@ -53,9 +53,6 @@ mod tests {
     fn a_passed_memory_cap_is_told() {
         let used = RunReport { peak_memory_bytes: Some(2000), ..report(10, 0) };
         assert!(broken(&used, Some(2000)).is_empty());
-        assert_eq!(
-            broken(&used, Some(1999)),
-            ["the run took 2.0 kB of memory, more than the 2.0 kB of --max-memory"]
-        );
+        assert_eq!(broken(&used, Some(1999)), ["the run took 2.0 kB of memory, more than the 2.0 kB of --max-memory"]);
     }
 }
