@@ -7,7 +7,7 @@ use super::{Error, LdiReport, Report, ThinReport};
 use crate::contour::{Contour, Crossing, Edge, collapse_same_voxel};
 use crate::lattice::{Grid, Lattice};
 use crate::ldi::{Layers, Lengths, Spans, THIN, edge_crossing, lengths};
-use crate::mesh::{Plane, TriMesh, intersecting_triangles};
+use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
 use crate::vote::{Votes, doubts};
 
@@ -159,6 +159,5 @@ pub(super) fn collapse(
         let plane = Plane::through(soup.mesh.corners(triangle as usize));
         (plane.normal != DVec3::ZERO).then_some((plane.normal, plane.offset))
     };
-    let find_intersecting = |mesh: &TriMesh| intersecting_triangles(mesh, progress);
-    Ok(collapse_same_voxel(contour, lattice, &plane, &find_intersecting, progress)?.contour)
+    Ok(collapse_same_voxel(contour, lattice, &plane, progress)?.contour)
 }
