@@ -322,16 +322,9 @@ impl<'a> Merging<'a> {
     fn mesh(&self, changed: Option<&[u32]>) -> Part {
         let block = |v: u32| self.voxel(v) >> 2;
         let near = changed.map(|groups| {
-<<<<<<< HEAD
-            let (vertices, _) = self.surroundings(groups);
-            let steps =
-                || (-2..=2).flat_map(|z| (-2..=2).flat_map(move |y| (-2..=2).map(move |x| IVec3::new(x, y, z))));
-            vertices.iter().flat_map(|&v| steps().map(move |s| self.voxel(v) + s)).collect::<FxHashSet<IVec3>>()
-=======
             let blocks: FxHashSet<IVec3> = self.surroundings(groups).0.into_iter().map(block).collect();
             let steps = || (0..27).map(|k| IVec3::new(k % 3, k / 3 % 3, k / 9) - 1);
             blocks.iter().flat_map(|&b| steps().map(move |s| b + s)).collect::<FxHashSet<IVec3>>()
->>>>>>> 188f3bf0881a8000dee85ca83359a413ddd394f2
         });
         let wanted = |t: [u32; 3]| near.as_ref().is_none_or(|near| t.iter().any(|&v| near.contains(&block(v))));
         let all = self.raw.mesh.triangles.par_iter().enumerate();
