@@ -3,10 +3,15 @@
 
 mod contour_support;
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use contour_support::{Case, enclosed, fault, noise};
 use glam::{DVec3, IVec3};
-use meshwright::contour::Contour;
+use meshwright::contour::{Collapsed, Contour, ContourOptions, Crossing, Edge, collapse_same_voxel, contour};
+use meshwright::lattice::Slot;
 use meshwright::mesh::TriMesh;
+use meshwright::progress::{Progress, Stopped};
 use proptest::prelude::*;
 use rayon::prelude::*;
 
@@ -82,7 +87,7 @@ fn a_ball_with_an_inactive_core_has_the_volume_of_a_ball() {
     let inside = |v: IVec3| v.as_dvec3().distance(centre) < radius;
     let mut case = Case::new(IVec3::splat(64), 1, inside);
     let bricks = case.distance.bricks.clone();
-    assert!(bricks.slot(IVec3::splat(3)) == meshwright::lattice::Slot::Inside);
+    assert!(bricks.slot(IVec3::splat(3)) == Slot::Inside);
     for (n, &b) in bricks.active().iter().enumerate() {
         for k in 0..512 {
             let v = b * 8 + IVec3::new(k & 7, k >> 3 & 7, k >> 6);
@@ -104,22 +109,50 @@ fn a_ball_with_an_inactive_core_has_the_volume_of_a_ball() {
 fn a_box_with_exact_crossings_is_exact_up_to_its_rounded_edges() {
     let inside = |v: IVec3| v.cmpge(IVec3::splat(5)).all() && v.cmplt(IVec3::new(20, 16, 33)).all();
     let case = Case::new(IVec3::splat(40), 3, inside);
-    let crossing = |_| Some(meshwright::contour::Crossing { t: 0.5, triangle: 0 });
-    let solid = meshwright::contour::contour(
-        &case.lattice,
-        &case.distance,
-        &crossing,
-        &Default::default(),
-        &meshwright::progress::Progress::none(),
-    );
+    let crossing = |_| Some(Crossing { t: 0.5, triangle: 0 });
+    let solid = contour(&case.lattice, &case.distance, &crossing, &ContourOptions::default(), &Progress::none());
     let volume = enclosed(&solid.unwrap().mesh) / case.lattice.h.powi(3);
     let (exact, edges): (f64, f64) = (15.0 * 11.0 * 28.0, 4.0 * (15.0 + 11.0 + 28.0));
     // each edge loses a prism of half by half a voxel, halved
     assert!((exact - volume - edges / 8.0).abs() < 1.0, "{volume} {exact}");
 }
 
-fn with_threads(threads: usize, case: &Case) -> Contour {
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| case.contour())
+#[test]
+fn the_collapse_brings_the_edges_of_a_box_back() {
+    let inside = |v: IVec3| v.cmpge(IVec3::splat(5)).all() && v.cmplt(IVec3::new(20, 16, 33)).all();
+    let case = Case::new(IVec3::splat(40), 3, inside);
+    // one triangle for each side: low x, low y, low z, high x, high y, high z
+    let side = |edge: Edge| u32::from(edge.axis) + 3 * u32::from(inside(edge.voxel));
+    let crossing = |edge: Edge| Some(Crossing { t: 0.3, triangle: side(edge) });
+    let places = [4.3, 4.3, 4.3, 19.3, 15.3, 32.3];
+    let planes = |triangle: u32| {
+        let normal = DVec3::AXES[triangle as usize % 3] * if triangle < 3 { -1.0 } else { 1.0 };
+        Some((normal, normal.dot(case.lattice.to_model(DVec3::splat(places[triangle as usize])))))
+    };
+    let raw = contour(&case.lattice, &case.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap();
+    let rounded = enclosed(&raw.mesh) / case.lattice.h.powi(3);
+    let solid = collapse_same_voxel(raw, &case.lattice, &planes, &Progress::none()).unwrap();
+    assert_eq!(fault(&solid.contour.mesh), None);
+    assert_eq!((solid.merged, solid.kept_apart), (4 * (15 + 11 + 28) - 16, 0));
+    let volume = enclosed(&solid.contour.mesh) / case.lattice.h.powi(3);
+    let exact = 15.0 * 11.0 * 28.0;
+    assert!((volume - exact).abs() < 0.02 * (rounded - exact).abs(), "{rounded} {volume} {exact}");
+}
+
+#[test]
+fn a_cancelled_contour_stops() {
+    let progress = Progress::none().with_flag(Arc::new(AtomicBool::new(true)));
+    let case = Case::new(IVec3::splat(20), 2, |v| v.x > 9);
+    let stopped = contour(&case.lattice, &case.distance, &|_| None, &ContourOptions::default(), &progress);
+    assert_eq!(stopped, Err(Stopped::Interrupted));
+    let planes = |_| None;
+    let stopped = collapse_same_voxel(case.contour(), &case.lattice, &planes, &progress);
+    assert_eq!(stopped, Err(Stopped::Interrupted));
+}
+
+fn with_threads(threads: usize, case: &Case) -> (Contour, Collapsed) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| (case.contour(), case.collapsed(case.contour())))
 }
 
 #[test]
@@ -127,6 +160,6 @@ fn one_thread_or_two_give_the_same() {
     let inside = |v: IVec3| noise(5, v / 3, 92) < 0.4;
     let case = Case::new(IVec3::splat(50), 5, inside);
     let one = with_threads(1, &case);
-    assert!(one.mesh.triangles.len() > 10_000);
-    assert_eq!(one, with_threads(2, &case));
+    assert!(one.0.mesh.triangles.len() > 10_000 && one.1.merged > 1000);
+    assert!(one == with_threads(2, &case));
 }

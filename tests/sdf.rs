@@ -41,7 +41,7 @@ fn a_finely_meshed_torus_has_the_torus_distance() {
     assert!(near.len() > 10_000);
     let errors = near.iter().map(|&(v, d)| (d as f64 - to_torus(lattice.to_model(v.as_dvec3())) / lattice.h).abs());
     let (sum, max) = errors.fold((0.0, 0.0f64), |(sum, max), e| (sum + e, max.max(e)));
-    assert!(sum / (near.len() as f64) < 0.01 && max < 0.1, "mean {} max {max}", sum / near.len() as f64);
+    assert!(sum / (near.len() as f64) < 0.002 && max < 0.02, "mean {} max {max}", sum / near.len() as f64);
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn marching_reaches_the_band_with_small_error_and_keeps_signs() {
         let inside = v.min_element() >= 0 && (lattice.dims - v).min_element() > 0;
         let truth = to_torus(lattice.to_model(v.as_dvec3())) / lattice.h;
         if inside && truth.abs() < 7.0 {
-            assert_eq!(d < 0.0, truth < 0.0, "{v}");
+            assert!((d < 0.0) == (truth < 0.0) || truth.abs() < 0.01, "{v}: {d} for {truth}");
             let error = (d as f64 - truth).abs();
             (reached, sum, max) = (reached + 1, sum + error, max.max(error));
         } else if inside && truth.abs() > 9.0 {

@@ -77,11 +77,15 @@ fn losses(before: &Validity, after: &Validity) -> Vec<String> {
     let mut sentences = Vec::new();
     if after.degenerate_triangles > before.degenerate_triangles {
         let more = after.degenerate_triangles - before.degenerate_triangles;
-        sentences.push(format!("{} lost their area by rounding to the numbers of the format", words::plural(more, "triangle")));
+        sentences.push(format!(
+            "{} lost their area by rounding to the numbers of the format",
+            words::plural(more, "triangle")
+        ));
     }
     if after.vertices - after.unused_vertices < before.vertices - before.unused_vertices {
         let fewer = before.vertices - before.unused_vertices - (after.vertices - after.unused_vertices);
-        sentences.push(format!("{} fell together by rounding to the numbers of the format", words::plural(fewer, "vertex")));
+        sentences
+            .push(format!("{} fell together by rounding to the numbers of the format", words::plural(fewer, "vertex")));
     }
     sentences
 }

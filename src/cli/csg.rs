@@ -13,8 +13,7 @@ use super::solid::{self, Job};
 pub fn run(args: &CsgArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let operands = named_files(&args.operands)?;
     let names: Vec<&str> = operands.iter().map(|(name, _)| *name).collect();
-    let expression =
-        csg_parser::parse(&args.expression, &names).map_err(|e| explain(&args.expression, &names, &e))?;
+    let expression = csg_parser::parse(&args.expression, &names).map_err(|e| explain(&args.expression, &names, &e))?;
     let job = Job {
         paths: operands.iter().map(|(_, path)| *path).collect(),
         names: names.iter().map(|name| name.to_string()).collect(),

@@ -239,7 +239,8 @@ mod tests {
 
     #[test]
     fn durations() {
-        for (text, milliseconds) in [("0s", 0), ("0", 0), ("250ms", 250), ("30s", 30_000), ("5m", 300_000), ("1h", 3_600_000)]
+        for (text, milliseconds) in
+            [("0s", 0), ("0", 0), ("250ms", 250), ("30s", 30_000), ("5m", 300_000), ("1h", 3_600_000)]
         {
             assert_eq!(parse_duration(text), Ok(Duration::from_millis(milliseconds)), "{text}");
         }

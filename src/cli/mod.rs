@@ -54,18 +54,18 @@ pub fn main() -> ExitCode {
 
 fn dispatch(verb: &Verb) -> Exit {
     match verb {
-        Verb::Repair(args) => solid("repair", &args.solid, &[&args.input], |session, report| {
-            repair::run(args, session, report)
-        }),
+        Verb::Repair(args) => {
+            solid("repair", &args.solid, &[&args.input], |session, report| repair::run(args, session, report))
+        }
         Verb::Union(args) => booleans("union", args, Expression::union),
         Verb::Intersection(args) => booleans("intersection", args, Expression::intersection),
         Verb::Difference(args) => booleans("difference", args, Expression::difference),
-        Verb::Csg(args) => solid("csg", &args.solid, &csg::paths(&args.operands), |session, report| {
-            csg::run(args, session, report)
-        }),
-        Verb::Inspect(args) => run("inspect", &args.common, &[&args.input], None, |session, report| {
-            inspect::run(args, session, report)
-        }),
+        Verb::Csg(args) => {
+            solid("csg", &args.solid, &csg::paths(&args.operands), |session, report| csg::run(args, session, report))
+        }
+        Verb::Inspect(args) => {
+            run("inspect", &args.common, &[&args.input], None, |session, report| inspect::run(args, session, report))
+        }
         Verb::Convert(args) => run("convert", &args.common, &[&args.input], Some(&args.output), |session, report| {
             convert::run(args, session, report)
         }),

@@ -44,9 +44,8 @@ impl Session {
         let bar = progress_bar::progress_bar(!common.quiet);
         let flag = Arc::new(AtomicBool::new(false));
         let listening = bar.clone();
-        let mut progress = Progress::none()
-            .with_flag(flag.clone())
-            .with_listener(move |event| progress_bar::show(&listening, event));
+        let mut progress =
+            Progress::none().with_flag(flag.clone()).with_listener(move |event| progress_bar::show(&listening, event));
         if let Some(deadline) = common.timeout.and_then(|timeout| start.checked_add(timeout)) {
             progress = progress.with_deadline(deadline);
             watch_deadline(deadline, unfinished.clone());

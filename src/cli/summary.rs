@@ -112,7 +112,9 @@ fn thin(pipeline: &Report, unit: UnitName<'_>) -> Option<String> {
     let share = words::percent(thin.thin_spans, thin.spans);
     let typed = words::rounded_down(keeps);
     let keeps = words::with_unit(&typed, unit).replace(' ', "");
-    Some(format!("{share} of the walls are under 2 voxels thick and may have suffered; --voxel {keeps} would keep them"))
+    Some(format!(
+        "{share} of the walls are under 2 voxels thick and may have suffered; --voxel {keeps} would keep them"
+    ))
 }
 
 fn solid(validity: &Validity, unit: UnitName<'_>) -> String {
@@ -230,10 +232,8 @@ pub fn size_doubts(loaded: &Loaded, unit: Option<Unit>) -> Vec<String> {
     let mut doubts = Vec::new();
     let diagonal = bounds.diagonal();
     match unit.map(|unit| diagonal * unit.metres()) {
-        Some(metres) if !(1e-4..1e3).contains(&metres) => doubts.push(format!(
-            "the diagonal is {} m, which is rarely meant: is the unit right?",
-            words::number(metres)
-        )),
+        Some(metres) if !(1e-4..1e3).contains(&metres) => doubts
+            .push(format!("the diagonal is {} m, which is rarely meant: is the unit right?", words::number(metres))),
         None if !(1e-2..1e5).contains(&diagonal) => doubts.push(format!(
             "the diagonal is {}, which is rarely meant in millimetres: --unit says what the numbers are",
             words::number(diagonal)
@@ -243,7 +243,9 @@ pub fn size_doubts(loaded: &Loaded, unit: Option<Unit>) -> Vec<String> {
     let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
     // Single precision resolves 1 in 2^24; below a thousand steps across, shapes suffer visibly.
     if diagonal > 0.0 && farthest / diagonal > 16_000.0 {
-        doubts.push("it lies so far from the origin that single-precision formats (STL, GLB) cannot hold its details".into());
+        doubts.push(
+            "it lies so far from the origin that single-precision formats (STL, GLB) cannot hold its details".into(),
+        );
     }
     if bounds.size().min_element() == 0.0 {
         doubts.push("it is flat: it has no extent along one axis".into());

@@ -111,7 +111,11 @@ pub fn seconds(s: f64) -> String {
 /// A share of a whole, in percent.
 pub fn percent(part: usize, whole: usize) -> String {
     let share = 100.0 * part as f64 / whole.max(1) as f64;
-    if part > 0 && share < 0.01 { "under 0.01 %".into() } else { format!("{} %", number((share * 100.0).round() / 100.0)) }
+    if part > 0 && share < 0.01 {
+        "under 0.01 %".into()
+    } else {
+        format!("{} %", number((share * 100.0).round() / 100.0))
+    }
 }
 
 /// `a, b and c`.

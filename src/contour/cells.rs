@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use robust::{Coord, orient2d};
 
-use super::exact::{is_degenerate, triangles_meet};
 use super::signs::{Brick, Crossed, Signs, Tile};
 use super::table::{LOOPS, Loop, MOST_VERTICES, edge_ends};
 use super::vertices::{TASK, Vertices, bits, locate, value};
 use crate::lattice::Grid;
+use crate::mesh::triangles_intersect;
 use crate::progress::{Progress, Stopped};
 
 /// The triangles, and how many loops had no triangulation that is free of folds.
@@ -167,13 +168,22 @@ fn faults(polygon: &Polygon<'_>, index: usize, others: &[[u32; 3]], tables: &Tab
     if others.is_empty() && is_flat_enough(&polygon.points[..polygon.len()], local) {
         return 0;
     }
-    let at = |v: u32| tables.vertices.positions[v as usize];
-    let triangles: Vec<[u32; 3]> = local.iter().map(|t| t.map(|k| polygon.ids[k as usize])).collect();
-    let mut count = triangles.iter().filter(|t| is_degenerate(t.map(at))).count();
+    let corners = |t: &[u32; 3]| t.map(|v| tables.vertices.positions[v as usize]);
+    let others: Vec<_> = others.iter().map(corners).collect();
+    let triangles: Vec<_> = local.iter().map(|t| t.map(|k| polygon.points[k as usize])).collect();
+    let mut count = triangles.iter().filter(|t| is_degenerate(t)).count();
     for (i, a) in triangles.iter().enumerate() {
-        count += triangles[..i].iter().chain(others).filter(|b| triangles_meet(*a, **b, at)).count();
+        count += triangles[..i].iter().chain(&others).filter(|b| triangles_intersect(a, b)).count();
     }
     count
+}
+
+/// Whether the corners lie exactly on one line.
+fn is_degenerate(corners: &[DVec3; 3]) -> bool {
+    (0..3).all(|axis| {
+        let [a, b, c] = corners.map(|p| Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] });
+        orient2d(a, b, c) == 0.0
+    })
 }
 
 /// A cheap proof, in floating point with a margin, that the triangles do not fold: seen along an

@@ -4,18 +4,19 @@
 //! collapse all such edges is to merge the vertices of each inside voxel. Instead of one collapse
 //! after the other, all voxels are merged at once and the ones that did harm are split again, until
 //! nothing is wrong: a vertex whose triangles are not one fan, a triangle that turned over, a fold,
-//! an intersection. Each step looks at all vertices in parallel and depends on no order; it ends
+//! an intersection, a small body turned inside out. Each step looks at all vertices in parallel and depends on no order; it ends
 //! because the mesh without any merging is sound.
 
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
+use super::bodies::{shells, volumes};
 use super::place::place;
 use super::star::{Fault, star_fault, triangle_fault};
 use super::{Contour, ContourVertex, NO_TRIANGLE};
 use crate::lattice::Lattice;
-use crate::mesh::TriMesh;
+use crate::mesh::{TriMesh, intersecting_triangles};
 use crate::progress::{Progress, Stopped};
 
 /// Not a member of any group.
@@ -39,29 +40,31 @@ pub struct Collapsed {
     pub kept_apart: usize,
 }
 
-/// Finds triangles that intersect others: their ids, or all is well when there are none.
-pub type Finder<'a> = dyn Fn(&TriMesh) -> Result<Vec<u32>, Stopped> + Sync + 'a;
-
 /// Merges the vertices of each voxel into one that lies on the planes of their source triangles.
 ///
 /// `planes` gives the unit normal n and the offset n·x of an input triangle's plane, model units;
 /// `None` for one without area. The result is as valid as the raw contour: closed, oriented,
-/// manifold, every coordinate an `f32`, and free of what `find_intersecting` finds. Bærentzen §5,
-/// but for the place of the merged vertex: the midpoint would leave the surface.
+/// manifold, without intersecting triangles, every coordinate an `f32`. Bærentzen §5, but for the
+/// place of the merged vertex: the midpoint would leave the surface.
 pub fn collapse_same_voxel(
     contour: Contour,
     lattice: &Lattice,
     planes: &(impl Fn(u32) -> Option<(DVec3, f64)> + Sync),
-    find_intersecting: &Finder<'_>,
     progress: &Progress,
 ) -> Result<Collapsed, Stopped> {
-    let mut merging = Merging::new(&contour, lattice, planes);
+    let (shells, mut merging) = rayon::join(|| shells(&contour.mesh), || Merging::new(&contour, lattice, planes));
     progress.check()?;
     merging.settle(None, progress)?;
+    let volumes = merging.volumes_before(&shells);
     let mut changed: Option<Vec<u32>> = None;
     for search in 0.. {
         let part = merging.mesh(changed.as_deref());
-        let mut harmful = merging.groups_of(find_intersecting(&part.mesh)?.iter().map(|&t| part.origin[t as usize]));
+        let (intersecting, overturned) =
+            rayon::join(|| intersecting_triangles(&part.mesh, progress), || merging.overturned(&shells, &volumes));
+        let mut harmful = merging.groups_of(intersecting?.iter().map(|&t| part.origin[t as usize]));
+        harmful.extend(overturned);
+        harmful.sort_unstable();
+        harmful.dedup();
         if harmful.is_empty() {
             break;
         }
@@ -282,6 +285,23 @@ impl<'a> Merging<'a> {
         (vertices, triangles)
     }
 
+    fn volumes_before(&self, shells: &[u32]) -> Vec<f64> {
+        let mesh = &self.raw.mesh;
+        volumes(shells, &mesh.positions, mesh.triangles.iter().zip(0..).map(|(t, id)| (t[0], mesh.corners(id))))
+    }
+
+    /// The merged groups of shells that have turned inside out.
+    fn overturned(&self, shells: &[u32], before: &[f64]) -> Vec<u32> {
+        let triangles = self.raw.mesh.triangles.iter().filter_map(|&t| self.triangle(t));
+        let corners = triangles.map(|t| (t[0], t.map(|v| self.at[v as usize])));
+        let after = volumes(shells, &self.raw.mesh.positions, corners);
+        if after.iter().zip(before).all(|(after, before)| after * before > 0.0 || *before == 0.0) {
+            return Vec::new();
+        }
+        let over = |v: usize| before[shells[v] as usize] * after[shells[v] as usize] <= 0.0;
+        (0..shells.len()).filter(|&v| over(v)).filter_map(|v| self.merged_group(v as u32)).collect()
+    }
+
     /// The merged groups that the corners of raw triangles belong to.
     fn groups_of(&self, triangles: impl Iterator<Item = u32>) -> Vec<u32> {
         let corners = triangles.flat_map(|t| self.raw.mesh.triangles[t as usize]);
@@ -296,20 +316,20 @@ impl<'a> Merging<'a> {
         self.groups_of(self.surroundings(groups).1.into_iter())
     }
 
-    /// The current mesh; with `changed` groups, only the triangles in the voxels around them.
+    /// The current mesh; with `changed` groups, only the triangles that could meet a changed one. As
+    /// no vertex leaves the cells around its voxel and the voxels of a triangle are corners of one
+    /// cell, such triangles have voxels at most 4 apart: they lie in neighbouring blocks of 4³.
     fn mesh(&self, changed: Option<&[u32]>) -> Part {
+        let block = |v: u32| self.voxel(v) >> 2;
         let near = changed.map(|groups| {
-            let (vertices, _) = self.surroundings(groups);
-            let steps =
-                || (-2..=2).flat_map(|z| (-2..=2).flat_map(move |y| (-2..=2).map(move |x| IVec3::new(x, y, z))));
-            vertices.iter().flat_map(|&v| steps().map(move |s| self.voxel(v) + s)).collect::<FxHashSet<IVec3>>()
+            let blocks: FxHashSet<IVec3> = self.surroundings(groups).0.into_iter().map(block).collect();
+            let steps = || (0..27).map(|k| IVec3::new(k % 3, k / 3 % 3, k / 9) - 1);
+            blocks.iter().flat_map(|&b| steps().map(move |s| b + s)).collect::<FxHashSet<IVec3>>()
         });
-        let wanted = |t: [u32; 3]| near.as_ref().is_none_or(|near| t.iter().any(|&v| near.contains(&self.voxel(v))));
-        let (origin, kept): (Vec<u32>, Vec<[u32; 3]>) = (0u32..)
-            .zip(&self.raw.mesh.triangles)
-            .filter(|(_, t)| wanted(**t))
-            .filter_map(|(id, &t)| Some((id, self.triangle(t)?)))
-            .unzip();
+        let wanted = |t: [u32; 3]| near.as_ref().is_none_or(|near| t.iter().any(|&v| near.contains(&block(v))));
+        let all = self.raw.mesh.triangles.par_iter().enumerate();
+        let (origin, kept): (Vec<u32>, Vec<[u32; 3]>) =
+            all.filter(|(_, t)| wanted(**t)).filter_map(|(id, &t)| Some((id as u32, self.triangle(t)?))).unzip();
         let (positions, triangles, _) = self.compact(kept);
         Part { mesh: TriMesh { positions, triangles }, origin }
     }
@@ -325,7 +345,7 @@ impl<'a> Merging<'a> {
     }
 
     fn finish(self) -> Collapsed {
-        let kept = self.raw.mesh.triangles.iter().filter_map(|&t| self.triangle(t)).collect();
+        let kept = self.raw.mesh.triangles.par_iter().filter_map(|&t| self.triangle(t)).collect();
         let (positions, triangles, used) = self.compact(kept);
         let source = |&v: &u32| match self.merged_group(v) {
             Some(id) => ContourVertex { triangle: self.groups[id as usize].triangle, voxel: self.voxel(v) },

@@ -14,16 +14,16 @@
 //!
 //! A distance of exactly 0 counts as outside, and so does every voxel beyond [`Lattice::dims`].
 
+mod bodies;
 mod cells;
 mod collapse;
-mod exact;
 mod place;
 mod signs;
 mod star;
 mod table;
 mod vertices;
 
-pub use collapse::{Collapsed, Finder, collapse_same_voxel};
+pub use collapse::{Collapsed, collapse_same_voxel};
 
 use glam::IVec3;
 use rayon::prelude::*;

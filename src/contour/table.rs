@@ -63,7 +63,7 @@ fn directed(face: u8, a: u8, b: u8, inside: u8) -> (u8, u8) {
     let (pa, pb, pc) = (middle(edge_ends(a)), middle(edge_ends(b)), middle((inside, inside)));
     let (u, v) = ((face as usize / 2 + 1) % 3, (face as usize / 2 + 2) % 3);
     let turn = (pb[u] - pa[u]) * (pc[v] - pa[v]) - (pb[v] - pa[v]) * (pc[u] - pa[u]);
-    if (turn > 0) == (face % 2 == 0) { (a, b) } else { (b, a) }
+    if (turn > 0) == face.is_multiple_of(2) { (a, b) } else { (b, a) }
 }
 
 /// The directed links of one face. On a checkerboard each inside corner keeps its two edges to

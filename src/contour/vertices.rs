@@ -43,7 +43,7 @@ pub(super) fn locate(brick: &Brick, x: usize, y: usize, z: usize) -> (Tile, usiz
     (brick.around[x >> 3 | y >> 3 << 1 | z >> 3 << 2], (x & 7) | (y & 7) << 3 | (z & 7) << 6)
 }
 
-/// Where `brick`'s edge from voxel (x, y, z) is crossed, from 0 to 1 from that voxel.
+/// Where an edge is crossed, 0 at its lower end, given the distances at both ends.
 fn interpolated(low: f64, high: f64) -> f64 {
     // a voxel beyond the lattice is outside whatever its distance says
     let (low, high) = (low.abs(), high.abs());

@@ -164,6 +164,7 @@ pub fn boolean(
     let hits = solid::count(&layers);
     stages.begin("spans")?;
     let spans: Vec<Spans> = layers.into_par_iter().map(|layers| spans(layers, &soup.operands, expression)).collect();
+    solid::refuse_scattered(&spans, hits)?;
     stages.begin("vote")?;
     let jury = Jury { spans: &spans, operands: &soup.operands, expression, rule: options.rule };
     let votes = vote_near_surface(&jury, progress)?;

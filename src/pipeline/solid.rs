@@ -3,11 +3,11 @@
 use glam::DVec3;
 
 use super::prepare::Soup;
-use super::{LdiReport, Report, ThinReport};
+use super::{Error, LdiReport, Report, ThinReport};
 use crate::contour::{Contour, Crossing, Edge, collapse_same_voxel};
 use crate::lattice::{Grid, Lattice};
 use crate::ldi::{Layers, Lengths, Spans, THIN, edge_crossing, lengths};
-use crate::mesh::{Plane, TriMesh, intersecting_triangles};
+use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
 use crate::vote::{Votes, doubts};
 
@@ -108,17 +108,32 @@ fn keeping_voxel(thin: &ThinReport) -> String {
     }
 }
 
+/// With a larger share of silent rays there is no solid to speak of: of the real files that are
+/// worth repairing `beetle` has the largest, 75 %; a hundred unrelated triangles have 91 %.
+const MOST_SILENT: f64 = 0.85;
+
+/// An error when nearly all rays are silent: voting would then fill the volume with noise.
+pub(super) fn refuse_scattered(spans: &[Spans], count: Count) -> Result<(), Error> {
+    let silent: usize = spans.iter().map(|s| s.silent_rays).sum();
+    let share = silent as f64 / count.rays.max(1) as f64;
+    if share <= MOST_SILENT {
+        return Ok(());
+    }
+    let reason = format!(
+        "the surface encloses nothing: {:.0} % of the rays that meet it pass an open sheet; close or thicken it first",
+        100.0 * share
+    );
+    Err(Error::NothingEnclosed { reason })
+}
+
 /// Why the result has no inside, in one sentence, with what to try.
 pub(super) fn why_nothing(spans: &[Spans], lattice: &Lattice, count: Count, operands: usize) -> String {
     let silent: usize = spans.iter().map(|s| s.silent_rays).sum();
     let lengths = lengths(spans);
     let lost = thin(&lengths, lattice.h);
     if 2 * silent > count.rays {
-        return format!(
-            "the surface encloses nothing: {:.0} % of the rays that meet it pass an open sheet; \
-             close or thicken it first",
-            100.0 * silent as f64 / count.rays as f64
-        );
+        return "the surface encloses nothing: most rays that meet it pass an open sheet; close or thicken it first"
+            .into();
     }
     if !lengths.spans.is_empty() {
         return format!(
@@ -144,6 +159,5 @@ pub(super) fn collapse(
         let plane = Plane::through(soup.mesh.corners(triangle as usize));
         (plane.normal != DVec3::ZERO).then_some((plane.normal, plane.offset))
     };
-    let find_intersecting = |mesh: &TriMesh| intersecting_triangles(mesh, progress);
-    Ok(collapse_same_voxel(contour, lattice, &plane, &find_intersecting, progress)?.contour)
+    Ok(collapse_same_voxel(contour, lattice, &plane, progress)?.contour)
 }

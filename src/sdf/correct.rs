@@ -12,9 +12,19 @@ const FLAT: f32 = 0.1;
 /// Rounds of `d ← (1 - k) d + k d / |∇d|` over the transition region, the voxels that have a
 /// neighbour of the other sign, with upwind differences: only neighbours that are closer to the
 /// surface or on its other side count. Signs do not change.
-pub fn correct(mut grid: Grid<f32>, options: &RobustOptions) -> Grid<f32> {
+///
+/// Departure: voxels that hold their estimate are left alone. Here the nearest of 13 directions'
+/// points gives them a mean error of 0.0009 h on a torus at 96, and ten rounds make that 0.022 h;
+/// the paper has 0.0095 h before and 0.0029 h after. [`RobustOptions::correct_estimates`] corrects
+/// them all the same.
+pub fn correct(mut grid: Grid<f32>, estimates: &Grid<f32>, options: &RobustOptions) -> Grid<f32> {
     let adjacency = Adjacency::new(&grid.bricks);
-    let near = adjacency.transition(&grid);
+    let mut near = adjacency.transition(&grid);
+    if !options.correct_estimates {
+        near.par_iter_mut().enumerate().for_each(|(brick, near)| {
+            near.retain(|&n| grid.values[brick][n as usize] != estimates.values[brick][n as usize]);
+        });
+    }
     for _ in 0..options.correction_rounds {
         let changes: Vec<Vec<f32>> = near
             .par_iter()

@@ -23,7 +23,7 @@ use crate::vote::Votes;
 /// `planes` are those of the soup's triangles, in lattice coordinates.
 pub fn robust(spans: &[Spans], planes: &[Plane], votes: &Grid<Votes>, options: &RobustOptions) -> Grid<f32> {
     let estimates = estimate(spans, planes, &votes.bricks);
-    correct(smooth(votes, &estimates, options), options)
+    correct(smooth(votes, &estimates, options), &estimates, options)
 }
 
 /// Options of the robust field.
@@ -37,10 +37,12 @@ pub struct RobustOptions {
     pub damping: f32,
     /// Whether voxels the vote is sure of keep their side.
     pub trust_votes: bool,
+    /// Whether the correction also changes voxels that hold their estimate, as in the paper.
+    pub correct_estimates: bool,
 }
 
 impl Default for RobustOptions {
     fn default() -> Self {
-        Self { smoothing_rounds: 15, correction_rounds: 10, damping: 0.5, trust_votes: true }
+        Self { smoothing_rounds: 15, correction_rounds: 10, damping: 0.5, trust_votes: true, correct_estimates: false }
     }
 }

@@ -115,9 +115,13 @@ impl Jury<'_> {
     }
 
     fn half_ray_inside(&self, half: &[Hit], entering: i32) -> bool {
+        let signed = |hit: &Hit| if hit.entering() { entering } else { -entering };
+        if self.operands.count() == 1 {
+            return self.expression.evaluate(&[half.iter().map(signed).sum::<i32>() >= 1]);
+        }
         let mut counters = vec![0i32; self.operands.count()];
         for hit in half {
-            counters[self.operands.of(hit.triangle())] += if hit.entering() { entering } else { -entering };
+            counters[self.operands.of(hit.triangle())] += signed(hit);
         }
         let inside: Vec<bool> = counters.iter().map(|&c| c >= 1).collect();
         self.expression.evaluate(&inside)

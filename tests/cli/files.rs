@@ -138,9 +138,13 @@ fn streams_carry_what_files_do() {
 fn render_draws_a_picture_of_the_size_asked_for() {
     let folder = folder();
     run_in(&folder, "render testdata/broken_mug.obj -o OUT/one.png --width 200 --height 150").exits(0);
-    run_in(&folder, "render testdata/open_cube.off testdata/noisy_cube.off -o OUT/two.png --width 200 --height 100 --edges all")
+    run_in(
+        &folder,
+        "render testdata/open_cube.off testdata/noisy_cube.off -o OUT/two.png --width 200 --height 100 --edges all",
+    )
+    .exits(0);
+    run_in(&folder, "render testdata/torus.ply -o OUT/plain.png --width 64 --height 64 --edges none --no-defects")
         .exits(0);
-    run_in(&folder, "render testdata/torus.ply -o OUT/plain.png --width 64 --height 64 --edges none --no-defects").exits(0);
     for (name, size) in [("one.png", Some((200, 150))), ("two.png", None), ("plain.png", Some((64, 64)))] {
         let file = std::fs::File::open(folder.path().join(name)).unwrap();
         let reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();

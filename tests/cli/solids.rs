@@ -48,7 +48,8 @@ fn every_broken_sample_comes_back_as_a_valid_solid() {
 #[test]
 fn the_broken_mug_comes_back_in_one_piece() {
     let folder = folder();
-    let said = run_in(&folder, "repair testdata/broken_mug.obj -o OUT/mug.3mf --resolution 128 --unit mm").exits(0).stderr;
+    let said =
+        run_in(&folder, "repair testdata/broken_mug.obj -o OUT/mug.3mf --resolution 128 --unit mm").exits(0).stderr;
     let validity = solid(&folder, "mug.3mf");
     assert_eq!((&validity["bodies"], &validity["genus"]), (&1.into(), &1.into()), "a mug is one body with one tunnel");
     for label in ["input", "wrong", "done", "voxel", "result", "time"] {
