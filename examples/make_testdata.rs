@@ -39,7 +39,7 @@ pub fn files() -> Vec<(&'static str, Vec<u8>)> {
         ("flipped_patches.ply", ascii_ply(&flipped_patches())),
         ("doubled_faces.off", off(&doubled_faces())),
         ("touching_boxes.obj", obj(&touching_boxes())),
-        ("thin_plate.stl", binary_stl(&cuboid(DVec3::ZERO, dvec3(40.0, 40.0, 0.1)))),
+        ("thin_plate.stl", binary_stl(&cuboid(DVec3::ZERO, dvec3(10.0, 4.0, 0.04)))),
         ("monkey_saddle.off", off(&monkey_saddle())),
         ("broken_mug.obj", obj(&broken_mug())),
     ]

@@ -84,6 +84,12 @@ impl Failure {
         Self::new(Exit::Internal, message)
     }
 
+    /// More memory needed than allowed, bytes.
+    pub fn memory(needed: u64, allowed: u64) -> Self {
+        let (needed, allowed) = (words::bytes(needed), words::bytes(allowed));
+        Self::new(Exit::Memory, format!("about {needed} of memory would be needed, and --max-memory allows {allowed}"))
+    }
+
     /// The same with something to try.
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());
@@ -110,18 +116,16 @@ impl Failure {
             Error::VoxelSize { reason } => {
                 Self::new(if voxel_asked { Exit::Usage } else { Exit::Input }, reason.clone())
             }
-            Error::Memory { needed, allowed, voxel_that_fits } => Self::new(
-                Exit::Memory,
-                format!(
-                    "about {} of memory would be needed, and --max-memory allows {}",
-                    words::bytes(*needed),
-                    words::bytes(*allowed)
-                ),
-            )
-            .hint(format!(
-                "--voxel {} would fit",
-                words::with_unit(&words::rounded_up(*voxel_that_fits), unit).replace(' ', "")
-            )),
+            Error::Memory { needed, allowed, voxel_that_fits } => {
+                let failure = Self::memory(*needed, *allowed);
+                match voxel_that_fits {
+                    Some(h) => failure.hint(format!(
+                        "--voxel {} would fit",
+                        words::with_unit(&words::rounded_up(*h), unit).replace(' ', "")
+                    )),
+                    None => failure.hint("the inputs alone need that much: a larger --max-memory"),
+                }
+            }
             Error::MissingOperand { .. } => Self::internal(error.to_string()),
         }
     }

@@ -11,7 +11,7 @@ use super::length::Scale;
 use super::output::{Target, write_verified};
 use super::report::RunReport;
 use super::session::Session;
-use super::{limits, summary, words};
+use super::{limits, summary};
 use crate::io::{Loaded, Unit};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
@@ -79,7 +79,6 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
         "vote": options.rule,
-        "supersampling": options.supersampling,
         "collapse": options.collapse,
         "threads": rayon::current_num_threads(),
         "max_memory_bytes": options.max_memory,
@@ -101,26 +100,15 @@ fn plan(
     report: &mut RunReport,
 ) -> Result<Exit, Failure> {
     let meshes: Vec<TriMesh> = inputs.iter_mut().map(|input| std::mem::take(&mut input.loaded.mesh)).collect();
-    // The cap is judged below, after the estimate was shown.
-    let uncapped = Options { max_memory: None, ..options.clone() };
-    let plan = pipeline::plan(&meshes, &uncapped).map_err(|e| failure(&e, &inputs, unit, args))?;
+    let plan = pipeline::plan(&meshes, options).map_err(|e| failure(&e, &inputs, unit, args))?;
     report.plan = Some(plan);
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
         let text = summary::table(&summary::plan(&plan, unit.as_deref()));
         super::output::write_stream(text.as_bytes())?;
     }
-    pipeline::plan(&meshes, options).map_err(|e| failure(&e, &inputs, unit, args))?;
     match options.max_memory {
-        Some(cap) if plan.memory > cap => Err(Failure::new(
-            Exit::Memory,
-            format!(
-                "about {} of memory would be needed, and --max-memory allows {}",
-                words::bytes(plan.memory),
-                words::bytes(cap)
-            ),
-        )
-        .hint("a lower --resolution or a larger --voxel")),
+        Some(cap) if plan.memory > cap => Err(Failure::memory(plan.memory, cap).hint("a lower --resolution")),
         _ => Ok(Exit::Done),
     }
 }

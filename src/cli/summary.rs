@@ -39,16 +39,16 @@ fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
     let mut rows = Vec::new();
     for input in &report.inputs {
         rows.push(("input", described(input)));
-        rows.push(("wrong", wrong(input)));
+        rows.extend(wrong(input).into_iter().map(|text| ("wrong", text)));
     }
     if let Some(pipeline) = &report.pipeline {
-        rows.push(("done", done(pipeline).join("; ")));
+        rows.extend(done(pipeline).into_iter().map(|text| ("done", text)));
         rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
         rows.extend(thin(pipeline, unit).map(|text| ("thin", text)));
     }
     if let Some((output, validity)) = report.output.as_ref().and_then(|o| Some((o, o.validity.as_ref()?))) {
         rows.push(("result", format!("{}: {}", output.path, solid(validity, unit))));
-        rows.push(("", "closed, oriented, without self-intersections; checked on the written file".into()));
+        rows.push(("result", "closed, oriented, without self-intersections; checked on the written file".into()));
     }
     let memory = report.peak_memory_bytes.map_or(String::new(), |bytes| format!(", {} of memory", words::bytes(bytes)));
     rows.push(("time", format!("{}{memory}", words::seconds(report.seconds))));
@@ -71,17 +71,12 @@ fn described(input: &InputEntry) -> String {
     text
 }
 
-fn wrong(input: &InputEntry) -> String {
+fn wrong(input: &InputEntry) -> Vec<String> {
     match &input.validity {
-        Some(validity) if validity.is_valid() => "nothing: it is a closed, oriented solid".into(),
-        Some(validity) => sentence(&validity.problems()),
-        None => "not examined".into(),
+        Some(validity) if validity.is_valid() => vec!["nothing: it is a closed, oriented solid".into()],
+        Some(validity) => validity.problems().iter().map(|problem| problem.trim_end_matches('.').to_string()).collect(),
+        None => Vec::new(),
     }
-}
-
-/// Sentences of problems as one: full stops become semicolons.
-fn sentence(problems: &[String]) -> String {
-    problems.iter().map(|problem| problem.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
 }
 
 fn done(pipeline: &Report) -> Vec<String> {
@@ -99,7 +94,7 @@ fn done(pipeline: &Report) -> Vec<String> {
     add(sum(|o| o.flipped_patches), "patch", "turned over as a whole");
     if pipeline.ldi.silent_rays > 0 {
         let share = words::percent(pipeline.ldi.silent_rays, pipeline.ldi.rays);
-        parts.push(format!("{share} of the rays met a hole or a crack, and others decided in their place"));
+        parts.push(format!("{share} of the rays met a hole or a crack; others decided in their place"));
     }
     parts.push("the surface was built anew".into());
     parts
@@ -142,21 +137,15 @@ fn details(report: &RunReport, pipeline: &Report, unit: UnitName<'_>) -> Vec<Row
     rows.push((
         "rays",
         format!(
-            "{} with {}, at most {} on one; {} silent",
-            words::plural(pipeline.ldi.rays, "ray"),
+            "{}, {} of them silent; {}, at most {} on one",
+            words::count(pipeline.ldi.rays),
+            words::count(pipeline.ldi.silent_rays),
             words::plural(pipeline.ldi.hits, "crossing"),
-            words::count(pipeline.ldi.layers),
-            words::count(pipeline.ldi.silent_rays)
+            words::count(pipeline.ldi.layers)
         ),
     ));
-    rows.push((
-        "doubt",
-        format!(
-            "{} of {}",
-            words::count(vote.doubtful),
-            words::plural(vote.voxels, "voxel near the surface").replace("surfaces", "surface")
-        ),
-    ));
+    let (doubtful, voxels) = (words::plural(vote.doubtful, "voxel"), words::count(vote.voxels));
+    rows.push(("doubt", format!("{doubtful} of {voxels} near the surface")));
     for region in vote.doubtful_regions.iter().take(5) {
         let place = |p: [f64; 3]| p.map(words::number).join(" ");
         let text = format!(

@@ -116,7 +116,7 @@ fn a_unit_goes_along_where_the_format_has_a_place_for_it() {
     let json = run_in(&folder, "inspect OUT/plate.3mf --json").exits(0).json();
     assert_eq!(json["inputs"][0]["unit"], "in");
     // The numbers are untouched: nothing is rescaled.
-    assert_eq!(json["inputs"][0]["validity"]["bounds"][1][0], 40.0);
+    assert_eq!(json["inputs"][0]["validity"]["bounds"][1][0], 10.0);
     run_in(&folder, "inspect OUT/plate.3mf --unit mm").exits(0);
     let text = run_in(&folder, "inspect OUT/plate.3mf --unit mm").text();
     assert!(text.contains("--unit mm is not used"), "{text}");

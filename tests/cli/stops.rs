@@ -32,8 +32,12 @@ fn a_deadline_within_the_work_stops_it() {
 #[test]
 fn a_memory_cap_refuses_before_the_work() {
     let folder = folder();
-    let said = run_in(&folder, "repair testdata/torus.ply -o OUT/a.stl --max-memory 1M").exits(5);
-    said.says(&["error: ", "--max-memory", "hint: --voxel"]);
+    run_in(&folder, "repair testdata/torus.ply -o OUT/a.stl --max-memory 1M")
+        .exits(5)
+        .says(&["error: ", "--max-memory"]);
+    run_in(&folder, "repair testdata/torus.ply -o OUT/a.stl --max-memory 50M --unit cm")
+        .exits(5)
+        .says(&["hint: --voxel 0."]);
     run_in(&folder, "repair testdata/torus.ply --plan --max-memory 1M").exits(5);
     assert_empty(&folder);
 }
