@@ -387,3 +387,14 @@ fn entities_do_not_multiply() {
     let loaded = read_bytes(&zipped(&[("3D/3dmodel.model", text.as_bytes())]), None, None).unwrap();
     assert_eq!(loaded.parts[0].name, "&b;");
 }
+
+#[test]
+fn gltf_of_empty_things_stays_small() {
+    let document = |key: &str, thing: &str| {
+        format!(r#"{{"asset":{{"version":"2.0"}},"{key}":[{}]}}"#, vec![thing; 100_000].join(","))
+    };
+    for key in ["nodes", "accessors", "meshes", "materials", "scenes"] {
+        assert_is!(refuse(document(key, "{}"), Format::Gltf).1, ReadProblem::TooLarge { .. });
+    }
+    assert_is!(refuse(document("nodes", r#"{"name":"a"}"#), Format::Gltf).1, ReadProblem::NoTriangles);
+}
