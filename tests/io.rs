@@ -5,6 +5,8 @@
 mod formats;
 #[path = "io/hostile.rs"]
 mod hostile;
+#[path = "io/memory.rs"]
+mod memory;
 #[path = "io/mutants.rs"]
 mod mutants;
 #[path = "io/real.rs"]

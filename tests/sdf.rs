@@ -12,7 +12,7 @@ use meshwright::vote::{VoteRule, voxel_in_brick};
 
 fn robust_of(mesh: &TriMesh, lattice: &Lattice, options: &RobustOptions) -> Grid<f32> {
     let spans = stages::spans_of(mesh, lattice);
-    let votes = stages::votes_of(&spans, VoteRule::HalfRays);
+    let votes = stages::votes_of(mesh, lattice, VoteRule::default());
     robust(&spans, &stages::planes_of(mesh, lattice), &votes, options)
 }
 
@@ -72,7 +72,7 @@ fn correction_does_not_change_signs_and_walls_of_one_voxel_survive() {
     let mesh = shapes::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 1.2 / 64.0));
     let lattice = stages::lattice_of(&mesh, 64);
     let spans = stages::spans_of(&mesh, &lattice);
-    let votes = stages::votes_of(&spans, VoteRule::HalfRays);
+    let votes = stages::votes_of(&mesh, &lattice, VoteRule::default());
     let grid = robust(&spans, &stages::planes_of(&mesh, &lattice), &votes, &RobustOptions::default());
     let inside = voxels(&grid).filter(|(_, d)| *d < 0.0).count();
     assert!(inside >= 64 * 64 - 200, "{inside}");

@@ -16,11 +16,10 @@ fn all_voxels(lattice: &Lattice) -> impl Iterator<Item = IVec3> {
 
 /// Votes on every voxel of the lattice, in the order of [`all_voxels`].
 fn dense(mesh: &TriMesh, lattice: &Lattice, rule: VoteRule) -> Vec<bool> {
-    let spans = stages::spans_of(mesh, lattice);
     let top = brick_of(lattice.dims - 1);
     let bricks = (0..=top.z).flat_map(|z| (0..=top.y).flat_map(move |y| (0..=top.x).map(move |x| IVec3::new(x, y, z))));
     let mut inside = std::collections::HashMap::new();
-    stages::with_jury(&spans, rule, |jury| {
+    stages::with_jury(mesh, lattice, rule, |jury| {
         for brick in bricks {
             for (n, votes) in jury.brick(brick).iter().enumerate() {
                 inside.insert(brick * BRICK + voxel_in_brick(n), votes.is_inside);
@@ -31,7 +30,7 @@ fn dense(mesh: &TriMesh, lattice: &Lattice, rule: VoteRule) -> Vec<bool> {
 }
 
 fn sparse(mesh: &TriMesh, lattice: &Lattice, rule: VoteRule) -> Grid<Votes> {
-    stages::votes_of(&stages::spans_of(mesh, lattice), rule)
+    stages::votes_of(mesh, lattice, rule)
 }
 
 proptest! {
@@ -49,7 +48,7 @@ proptest! {
         let mut mesh = shapes::cuboid(-half, half);
         mesh.positions.iter_mut().for_each(|p| *p = turn * *p);
         let lattice = stages::lattice_of(&mesh, resolution);
-        let votes = sparse(&mesh, &lattice, VoteRule::HalfRays);
+        let votes = sparse(&mesh, &lattice, VoteRule::default());
         for voxel in all_voxels(&lattice) {
             let p = turn.transpose() * lattice.to_model(voxel.as_dvec3());
             let depth = (half - p.abs()).min_element();
@@ -65,7 +64,7 @@ proptest! {
     fn the_stored_bricks_agree_with_a_vote_on_every_voxel(
         missing in prop::collection::vec(0usize..2048, 0..60),
         resolution in 24u32..48,
-        paper in any::<bool>(),
+        rule in prop::sample::select(vec![VoteRule::Winding, VoteRule::HalfRays, VoteRule::Majority, VoteRule::Paper]),
     ) {
         // Holes make the surface grow where no ray crosses anything.
         let mut mesh = shapes::torus(64, 16);
@@ -74,7 +73,6 @@ proptest! {
         missing.dedup();
         missing.iter().rev().for_each(|&t| { mesh.triangles.swap_remove(t); });
         let lattice = stages::lattice_of(&mesh, resolution);
-        let rule = if paper { VoteRule::Paper } else { VoteRule::HalfRays };
         let grid = sparse(&mesh, &lattice, rule);
         for (voxel, inside) in all_voxels(&lattice).zip(dense(&mesh, &lattice, rule)) {
             prop_assert_eq!(grid.get(voxel).is_inside, inside, "{}", voxel);
@@ -89,7 +87,7 @@ fn a_void_stays_a_void() {
     inner.triangles.iter_mut().for_each(|t| t.swap(0, 1));
     mesh.append(&inner);
     let lattice = stages::lattice_of(&mesh, 64);
-    let votes = sparse(&mesh, &lattice, VoteRule::HalfRays);
+    let votes = sparse(&mesh, &lattice, VoteRule::default());
     let at = |x: f64| votes.get(lattice.to_lattice(DVec3::splat(x)).round().as_ivec3()).is_inside;
     assert!(!at(2.0) && at(0.5) && at(3.5));
 }

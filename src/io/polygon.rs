@@ -86,9 +86,18 @@ impl Ring<'_> {
     /// place as one of the triangle's do not count: keyhole polygons pass a point twice.
     fn is_empty_ear(&self, corner: usize) -> bool {
         let [a, b, c] = [self.previous[corner], corner, self.next[corner]].map(|i| self.points[i]);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         !self.reflex.iter().any(|&i| {
             let p = self.points[i];
-            p != a && p != b && p != c && side(a, b, p) >= 0.0 && side(b, c, p) >= 0.0 && side(c, a, p) >= 0.0
+            // Most are far away, and the exact tests are dear.
+            p.cmpge(low).all()
+                && p.cmple(high).all()
+                && p != a
+                && p != b
+                && p != c
+                && side(a, b, p) >= 0.0
+                && side(b, c, p) >= 0.0
+                && side(c, a, p) >= 0.0
         })
     }
 

@@ -35,6 +35,12 @@ impl Operands {
         self.ends.len()
     }
 
+    /// The triangles of operand `operand`.
+    pub fn range(&self, operand: usize) -> std::ops::Range<usize> {
+        let start = if operand == 0 { 0 } else { self.ends[operand - 1] as usize };
+        start..self.ends[operand] as usize
+    }
+
     /// The operand of triangle `triangle`.
     #[inline]
     pub fn of(&self, triangle: u32) -> usize {

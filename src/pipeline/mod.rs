@@ -18,7 +18,7 @@ use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
 use crate::progress::{Progress, Stopped};
 use crate::sdf::{self, RobustOptions};
-use crate::vote::{Jury, VoteRule, vote_near_surface};
+use crate::vote::{Jury, VoteRule, Winding, vote_near_surface};
 
 /// The voxel size of a pipeline. There is no default: it decides what is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -166,7 +166,8 @@ pub fn boolean(
     let spans: Vec<Spans> = layers.into_par_iter().map(|layers| spans(layers, &soup.operands, expression)).collect();
     solid::refuse_scattered(&spans, hits)?;
     stages.begin("vote")?;
-    let jury = Jury { spans: &spans, operands: &soup.operands, expression, rule: options.rule };
+    let winding = Winding::new(&soup.mesh, &soup.operands, &lattice);
+    let jury = Jury { spans: &spans, operands: &soup.operands, expression, rule: options.rule, winding: &winding };
     let votes = vote_near_surface(&jury, progress)?;
     stages.begin("sdf")?;
     let distance = sdf::robust(&spans, &soup.planes(&lattice), &votes, &options.robust);

@@ -4,10 +4,12 @@
 mod doubt;
 mod grow;
 mod tally;
+mod winding;
 
 pub use doubt::doubts;
 pub use grow::vote_near_surface;
 pub use tally::{FEW, Jury, Votes, voxel_in_brick};
+pub use winding::{Winding, WindingTree};
 
 use serde::Serialize;
 
@@ -15,8 +17,11 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VoteRule {
-    /// More than half of the valid votes; below five valid votes the half-rays decide.
+    /// Ten valid votes or more that all agree; where there are none, the generalised winding number
+    /// of the soup, at least ½ inside.
     #[default]
+    Winding,
+    /// More than half of the valid votes; below five valid votes the half-rays decide.
     HalfRays,
     /// More than half of the valid votes.
     Majority,

@@ -2,13 +2,16 @@
 
 use glam::IVec3;
 
-use super::VoteRule;
+use super::{VoteRule, Winding};
 use crate::lattice::{BRICK, BRICK_VOXELS, Direction};
 use crate::ldi::{Expression, Hit, Operands, Spans};
 
 /// Below this many valid votes the half-rays decide ([`VoteRule::HalfRays`]), and a voxel is
 /// doubtful.
 pub const FEW: u8 = 5;
+/// With this many valid votes that all agree, a voxel needs no winding number
+/// ([`VoteRule::Winding`]).
+const ENOUGH: u8 = 10;
 
 /// What the directions say of one voxel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -28,6 +31,12 @@ impl Votes {
         self.valid < FEW || 4 * self.inside.min(self.valid - self.inside) > self.valid
     }
 
+    /// At least ten directions speak, and all say the same.
+    #[inline]
+    fn clear(self) -> bool {
+        self.valid >= ENOUGH && (self.inside == 0 || self.inside == self.valid)
+    }
+
     /// All 13 directions say the same.
     #[inline]
     pub fn unanimous(self) -> bool {
@@ -45,6 +54,8 @@ pub struct Jury<'a> {
     pub expression: &'a Expression,
     /// How votes become a decision.
     pub rule: VoteRule,
+    /// The winding numbers of the operands.
+    pub winding: &'a Winding<'a>,
 }
 
 /// Rays of a brick along u or v, at most: 8 voxels and a shear of 7; and one to make it even.
@@ -89,6 +100,7 @@ impl Jury<'_> {
     fn decide(&self, votes: Votes, voxel: IVec3) -> bool {
         match self.rule {
             VoteRule::Paper => 2 * votes.inside > 13,
+            VoteRule::Winding if !votes.clear() => self.winding.is_inside(voxel, self.expression),
             VoteRule::HalfRays if votes.valid < FEW => self.ask_half_rays(votes, voxel),
             _ => 2 * votes.inside > votes.valid,
         }

@@ -94,7 +94,7 @@ pub mod stages {
     use meshwright::ldi::{Expression, Operands, Spans, ldis, spans};
     use meshwright::mesh::{Plane, TriMesh};
     use meshwright::progress::Progress;
-    use meshwright::vote::{Jury, VoteRule, Votes, vote_near_surface};
+    use meshwright::vote::{Jury, VoteRule, Votes, Winding, vote_near_surface};
 
     /// Lattice with `resolution` voxels along the longest side.
     pub fn lattice_of(mesh: &TriMesh, resolution: u32) -> Lattice {
@@ -110,14 +110,17 @@ pub mod stages {
     }
 
     /// Calls `judge` with the jury of one operand.
-    pub fn with_jury<T>(spans: &[Spans], rule: VoteRule, judge: impl FnOnce(&Jury<'_>) -> T) -> T {
-        let operands = Operands::new([u32::MAX as usize]);
-        judge(&Jury { spans, operands: &operands, expression: &Expression::Operand(0), rule })
+    pub fn with_jury<T>(mesh: &TriMesh, lattice: &Lattice, rule: VoteRule, judge: impl FnOnce(&Jury<'_>) -> T) -> T {
+        let operands = Operands::new([mesh.triangles.len()]);
+        let spans = spans_of(mesh, lattice);
+        let winding = Winding::new(mesh, &operands, lattice);
+        let expression = Expression::Operand(0);
+        judge(&Jury { spans: &spans, operands: &operands, expression: &expression, rule, winding: &winding })
     }
 
     /// The votes near the surface of one operand.
-    pub fn votes_of(spans: &[Spans], rule: VoteRule) -> Grid<Votes> {
-        with_jury(spans, rule, |jury| vote_near_surface(jury, &Progress::none()).expect("not stopped"))
+    pub fn votes_of(mesh: &TriMesh, lattice: &Lattice, rule: VoteRule) -> Grid<Votes> {
+        with_jury(mesh, lattice, rule, |jury| vote_near_surface(jury, &Progress::none()).expect("not stopped"))
     }
 
     /// The planes of a mesh's triangles, lattice coordinates.

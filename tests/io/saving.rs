@@ -1,7 +1,7 @@
 //! Files are whole or not there.
 
 use std::fs;
-use std::io::{self, Write};
+use std::io;
 
 use meshwright::io::{Format, WriteOptions, WriteProblem, read, save_bytes, write};
 use meshwright::mesh::TriMesh;

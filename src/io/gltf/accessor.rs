@@ -43,7 +43,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-fn accessor<'r>(root: &'r Root, index: Index<Accessor>) -> Result<&'r Accessor, ReadError> {
+fn accessor(root: &Root, index: Index<Accessor>) -> Result<&Accessor, ReadError> {
     let count = root.accessors.len();
     root.get(index).ok_or_else(|| ReadError::new(missing(index.value(), count, "accessors")))
 }

@@ -29,7 +29,7 @@ pub(in crate::io) fn is_exact(bytes: &[u8]) -> bool {
 pub(in crate::io) fn looks_like(bytes: &[u8]) -> bool {
     count(bytes).is_some_and(|n| {
         let body = bytes.len() - PREFIX;
-        body > 0 && body % FACET == 0 && n <= body / FACET
+        body > 0 && body.is_multiple_of(FACET) && n <= body / FACET
     })
 }
 

@@ -31,7 +31,7 @@ fn begins_with_solid(bytes: &[u8]) -> bool {
 
 /// Reads either kind.
 pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
-    let too_short_for_binary = bytes.len() < binary::PREFIX && begins_with_solid(bytes);
+    let too_short_for_binary = bytes.len() < binary::PREFIX && begins_with_solid(bytes) && !bytes.contains(&0);
     let ascii = !is_exactly_binary(bytes) && (looks_ascii(bytes) || too_short_for_binary);
     let soup = if ascii { ascii::read(bytes)? } else { binary::read(bytes)? };
     soup.finish(Format::Stl, None)

@@ -13,7 +13,7 @@ use super::model::{self, Model};
 const ALWAYS_ALLOWED: u64 = 64 << 20;
 /// Beyond that, unpacked bytes for each byte of the package. Model files of real meshes shrink to
 /// a sixth, very regular ones to a thirtieth; deflate can do a thousandth.
-const LARGEST_RATIO: u64 = 100;
+const LARGEST_RATIO: u64 = 50;
 
 pub(super) struct Package<'a> {
     archive: ZipArchive<Cursor<&'a [u8]>>,
@@ -37,7 +37,7 @@ impl<'a> Package<'a> {
     /// else the usual one, else any.
     pub(super) fn root_model(&mut self) -> Result<String, ReadError> {
         let named = match self.find("_rels/.rels") {
-            Some(index) => self.unpack(index, "_rels/.rels", |reader| root_target(reader))?,
+            Some(index) => self.unpack(index, "_rels/.rels", root_target)?,
             None => None,
         };
         let usual = || self.find("3D/3dmodel.model").and_then(|i| self.archive.name_for_index(i));

@@ -1,0 +1,42 @@
+//! What every fuzz target asks of a reader: no panic, and either an error with a message or a
+//! mesh that keeps the promise and can be written and read again.
+
+use meshwright::io::{Format, WriteOptions, encode, read_bytes};
+
+/// Reads `data` as `format` and checks what comes out.
+pub fn check(data: &[u8], format: Format) {
+    let _ = Format::detect(data, None);
+    let loaded = match read_bytes(data, Some(format), None) {
+        Ok(loaded) => loaded,
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            return;
+        }
+    };
+    let mesh = &loaded.mesh;
+    assert!(!mesh.triangles.is_empty());
+    assert!(mesh.positions.iter().all(|p| p.is_finite()));
+    assert!(mesh.triangles.iter().flatten().all(|&v| (v as usize) < mesh.positions.len()));
+    assert!(!loaded.parts.is_empty());
+    assert!(loaded.parts.iter().all(|p| p.triangles.start < p.triangles.end && p.triangles.end <= mesh.triangles.len()));
+    // PLY holds doubles, so nothing may change on the way.
+    if mesh.triangles.len() < 10_000 {
+        let mut bytes = Vec::new();
+        encode(mesh, &WriteOptions::new(Format::Ply), &mut bytes).expect("what was read can be written");
+        let again = read_bytes(&bytes, None, None).expect("what was written can be read");
+        assert_eq!(&again.mesh, mesh);
+    }
+}
+
+/// A 3MF package for `data`: itself, or, since a mutated zip rarely gets past its checksums, the
+/// data as the model in a sound package.
+pub fn packed(data: &[u8]) -> Vec<u8> {
+    if data.starts_with(b"PK") {
+        return data.to_vec();
+    }
+    use std::io::Write;
+    let options = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    let written = zip.start_file("3D/3dmodel.model", options).map_err(std::io::Error::from).and_then(|()| zip.write_all(data));
+    written.and_then(|()| Ok(zip.finish()?.into_inner())).unwrap_or_default()
+}
