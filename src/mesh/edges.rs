@@ -3,14 +3,14 @@
 use super::weld::has_repeated_index;
 
 /// Items sorted by a small key, without a comparison sort: offsets and items.
-pub(super) struct Buckets {
+pub(crate) struct Buckets {
     start: Vec<u32>,
     items: Vec<u64>,
 }
 
 impl Buckets {
     /// Sorts `items` (key below `keys`, payload) by key, then payload.
-    pub(super) fn new(keys: usize, items: impl Iterator<Item = (u32, u64)> + Clone) -> Self {
+    pub(crate) fn new(keys: usize, items: impl Iterator<Item = (u32, u64)> + Clone) -> Self {
         let mut start = vec![0u32; keys + 1];
         for (key, _) in items.clone() {
             start[key as usize + 1] += 1;
@@ -34,44 +34,44 @@ impl Buckets {
     }
 
     /// The payloads of `key`, ascending.
-    pub(super) fn get(&self, key: usize) -> &[u64] {
+    pub(crate) fn get(&self, key: usize) -> &[u64] {
         &self.items[self.start[key] as usize..self.start[key + 1] as usize]
     }
 
     /// Number of keys.
-    pub(super) fn keys(&self) -> usize {
+    pub(crate) fn keys(&self) -> usize {
         self.start.len() - 1
     }
 }
 
 /// The half-edges of one undirected edge, ascending. Half-edge 3t+k runs from corner k of triangle t to the next.
-pub(super) struct Edge<'a> {
+pub(crate) struct Edge<'a> {
     /// The two vertices, the smaller first.
-    pub(super) ends: [u32; 2],
+    pub(crate) ends: [u32; 2],
     entries: &'a [u64],
 }
 
 impl Edge<'_> {
     /// The half-edges, ascending.
-    pub(super) fn halves(&self) -> impl Iterator<Item = u32> + '_ {
+    pub(crate) fn halves(&self) -> impl Iterator<Item = u32> + '_ {
         self.entries.iter().map(|&entry| entry as u32)
     }
 
     /// Number of triangles over the edge.
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.entries.len()
     }
 }
 
 /// All undirected edges of the triangles that have three different vertices.
-pub(super) struct Edges<'a> {
+pub(crate) struct Edges<'a> {
     triangles: &'a [[u32; 3]],
     buckets: Buckets,
 }
 
 impl<'a> Edges<'a> {
     /// Collects the edges; every index is below `vertices`.
-    pub(super) fn new(triangles: &'a [[u32; 3]], vertices: usize) -> Self {
+    pub(crate) fn new(triangles: &'a [[u32; 3]], vertices: usize) -> Self {
         let halves = triangles.iter().enumerate().filter(|(_, t)| !has_repeated_index(**t)).flat_map(|(id, t)| {
             (0..3).map(move |k| {
                 let (a, b) = (t[k], t[(k + 1) % 3]);
@@ -82,7 +82,7 @@ impl<'a> Edges<'a> {
     }
 
     /// Calls `visit` with every edge, by vertices.
-    pub(super) fn each(&self, mut visit: impl FnMut(Edge<'_>)) {
+    pub(crate) fn each(&self, mut visit: impl FnMut(Edge<'_>)) {
         for low in 0..self.buckets.keys() {
             for entries in self.buckets.get(low).chunk_by(|a, b| a >> 32 == b >> 32) {
                 visit(Edge { ends: [low as u32, (entries[0] >> 32) as u32], entries });
@@ -91,7 +91,7 @@ impl<'a> Edges<'a> {
     }
 
     /// Whether half-edge `half` runs from its edge's smaller vertex to the larger.
-    pub(super) fn runs_up(&self, half: u32) -> bool {
+    pub(crate) fn runs_up(&self, half: u32) -> bool {
         let [from, to] = self.corners_of(half).map(|c| self.triangles[c as usize / 3][c as usize % 3]);
         from < to
     }
@@ -109,7 +109,7 @@ impl<'a> Edges<'a> {
 
     /// What hangs together over edges: for each vertex the number of fans of triangles around it, and
     /// the number of shells.
-    pub(super) fn connectivity(&self) -> Connectivity {
+    pub(crate) fn connectivity(&self) -> Connectivity {
         let mut fans = vec![0u32; self.buckets.keys()];
         let mut shells = 0;
         for t in self.triangles.iter().filter(|t| !has_repeated_index(**t)) {
@@ -133,11 +133,11 @@ impl<'a> Edges<'a> {
 }
 
 /// See [`Edges::connectivity`].
-pub(super) struct Connectivity {
+pub(crate) struct Connectivity {
     /// Edge-connected fans of triangles around each vertex: 0 at unused, 1 at manifold ones.
-    pub(super) fans: Vec<u32>,
+    pub(crate) fans: Vec<u32>,
     /// Edge-connected shells.
-    pub(super) shells: usize,
+    pub(crate) shells: usize,
 }
 
 /// Disjoint sets, joined by the smaller root.
@@ -169,7 +169,7 @@ impl Union {
 
 /// For each triangle that repeats an earlier one (the same three vertices in any order): its id and the first one's.
 /// Ascending. Triangles with a repeated index take no part.
-pub(super) fn copies(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 2]> {
+pub(crate) fn copies(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 2]> {
     let sorted = |id: u64| {
         let mut t = triangles[id as usize];
         t.sort_unstable();

@@ -5,7 +5,7 @@
 //! a closed, oriented manifold while it is edited.
 
 mod defects;
-mod edges;
+pub(crate) mod edges;
 mod half_edges;
 mod plane;
 mod predicates;
@@ -13,7 +13,7 @@ mod self_intersection;
 mod tri_mesh;
 mod triangle_pair;
 mod validity;
-mod weld;
+pub(crate) mod weld;
 
 pub use defects::{Defects, defects};
 pub use half_edges::{Compacted, HalfEdges, NotManifold, Ring};

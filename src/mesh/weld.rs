@@ -6,19 +6,19 @@ use rustc_hash::FxHashMap;
 use super::TriMesh;
 
 /// For each vertex the first one with exactly equal coordinates (−0 equals 0).
-pub(super) fn first_of_equal(positions: &[DVec3]) -> Vec<u32> {
+pub(crate) fn first_of_equal(positions: &[DVec3]) -> Vec<u32> {
     let mut first = FxHashMap::with_capacity_and_hasher(positions.len(), Default::default());
     (0u32..).zip(positions).map(|(v, p)| *first.entry((*p + 0.0).to_array().map(f64::to_bits)).or_insert(v)).collect()
 }
 
 /// The triangles of `mesh` with each vertex replaced by the first one with equal coordinates.
-pub(super) fn welded_triangles(mesh: &TriMesh) -> Vec<[u32; 3]> {
+pub(crate) fn welded_triangles(mesh: &TriMesh) -> Vec<[u32; 3]> {
     let first = first_of_equal(&mesh.positions);
     mesh.triangles.iter().map(|t| t.map(|v| first[v as usize])).collect()
 }
 
 /// Whether a triangle names a vertex twice.
 #[inline]
-pub(super) fn has_repeated_index([a, b, c]: [u32; 3]) -> bool {
+pub(crate) fn has_repeated_index([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }

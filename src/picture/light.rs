@@ -1,0 +1,88 @@
+//! Colours and light.
+
+use std::ops::{Add, Mul};
+
+use glam::Vec3;
+
+use super::scene::Scene;
+use super::sight::{Hit, weights};
+
+/// A colour in linear light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rgb(Vec3);
+
+impl Rgb {
+    pub(super) const BLACK: Self = Self(Vec3::ZERO);
+    pub(super) const WHITE: Self = Self(Vec3::ONE);
+
+    /// From linear red, green and blue, 0 to 1.
+    pub(super) const fn new(r: f32, g: f32, b: f32) -> Self {
+        Self(Vec3::new(r, g, b))
+    }
+
+    pub(super) fn to_srgb(self) -> [u8; 3] {
+        self.0.to_array().map(|x| {
+            let x = x.clamp(0.0, 1.0);
+            let curved = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
+            (curved * 255.0 + 0.5) as u8
+        })
+    }
+}
+
+impl Add for Rgb {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl Mul<f32> for Rgb {
+    type Output = Self;
+    fn mul(self, by: f32) -> Self {
+        Self(self.0 * by)
+    }
+}
+
+/// Front sides.
+const FRONT: Vec3 = Vec3::new(0.52, 0.60, 0.70);
+/// Back sides: none are seen of an intact solid.
+const BACK: Vec3 = Vec3::new(0.66, 0.13, 0.05);
+/// Triangles that intersect others.
+const MARKED: Vec3 = Vec3::new(1.0, 0.50, 0.02);
+
+/// The main light, from above left and the viewer's side (x right, y up, z towards the viewer), and its strength.
+const KEY: (Vec3, f32) = (Vec3::new(-0.45, 0.65, 0.62), 0.78);
+/// A weaker one from the right, so that no side is black.
+const FILL: (Vec3, f32) = (Vec3::new(0.80, 0.10, 0.45), 0.22);
+/// Light from the sky above and from the ground.
+const AMBIENT: [f32; 2] = [0.34, 0.16];
+
+/// The colour of a visible point at (x, y). `darkness` is the share of the sky that is hidden from it.
+pub(super) fn shade(scene: &Scene, hit: Hit, [x, y]: [f32; 2], darkness: f32) -> Rgb {
+    let t = hit.triangle as usize;
+    let (n, facing) = normal_at(scene, t, x, y);
+    let base = match (scene.marked[t], facing) {
+        (true, _) => MARKED,
+        (_, true) => FRONT,
+        (_, false) => BACK,
+    };
+    let lit = |(from, strength): (Vec3, f32)| {
+        // Wrapped a little around the terminator: soft, as from a large light.
+        strength * ((n.dot(from.normalize()) + 0.15) / 1.15).max(0.0)
+    };
+    let open = 1.0 - darkness;
+    let sky = AMBIENT[1] + (AMBIENT[0] - AMBIENT[1]) * (0.5 + 0.5 * n.y);
+    let diffuse = (lit(KEY) + lit(FILL)) * (0.45 + 0.55 * open) + sky * open;
+    let half = (KEY.0.normalize() + Vec3::Z).normalize();
+    let gloss = 0.10 * n.dot(half).max(0.0).powi(40) * open;
+    Rgb(base * diffuse + Vec3::splat(gloss))
+}
+
+/// The normal on the viewer's side at a visible point, and whether the triangle faces the viewer.
+pub(super) fn normal_at(scene: &Scene, t: usize, x: f32, y: f32) -> (Vec3, bool) {
+    let facing = scene.flat[t].z >= 0.0;
+    let w = weights(&scene.corners[t], x, y);
+    let n = scene.smooth[t];
+    let n = (n[0] * w[0] + n[1] * w[1] + n[2] * w[2]).try_normalize().unwrap_or(scene.flat[t]);
+    (if facing { n } else { -n }, facing)
+}

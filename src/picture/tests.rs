@@ -1,0 +1,237 @@
+use glam::DVec3;
+
+use super::*;
+
+fn cube(low: DVec3) -> TriMesh {
+    let corner = |i: u32| low + DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64);
+    let quads = [[0, 1, 5, 4], [0, 2, 3, 1], [4, 5, 7, 6], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    TriMesh {
+        positions: (0..8).map(corner).collect(),
+        triangles: quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
+    }
+}
+
+/// A cube without its side towards −y.
+fn open_cube() -> TriMesh {
+    let mut mesh = cube(DVec3::ZERO);
+    mesh.triangles.drain(..2);
+    mesh
+}
+
+fn plain(view: View) -> RenderOptions {
+    let edges = EdgeDrawing::None;
+    RenderOptions { width: 200, height: 150, view, edges, background: Background::Transparent, ..Default::default() }
+}
+
+fn drawn(mesh: &TriMesh, options: &RenderOptions) -> Image {
+    render(mesh, options, &Progress::none()).unwrap()
+}
+
+fn count(image: &Image, which: impl Fn([u8; 4]) -> bool) -> usize {
+    image.rgba.as_chunks::<4>().0.iter().filter(|&&p| which(p)).count()
+}
+
+fn is_rust([r, g, b, a]: [u8; 4]) -> bool {
+    a > 0 && r / 2 > b && r / 2 > g
+}
+
+#[test]
+fn a_cube_from_the_front_covers_its_square() {
+    let image = drawn(&cube(DVec3::new(5.0, -3.0, 0.5)), &plain(View::FRONT));
+    assert_eq!((image.width, image.height, image.rgba.len()), (200, 150, 200 * 150 * 4));
+    let side = 150.0 * 0.92;
+    let covered = count(&image, |p| p[3] == 255) as f64;
+    assert!((covered / (side * side) - 1.0).abs() < 0.02, "{covered}");
+    assert_eq!(image.pixel(0, 0), Some([0; 4]));
+    assert_eq!(count(&image, is_rust), 0);
+    let white = drawn(&cube(DVec3::ZERO), &RenderOptions { background: Background::White, ..plain(View::FRONT) });
+    assert_eq!(white.pixel(0, 0), Some([255; 4]));
+}
+
+#[test]
+fn back_sides_show_through_a_missing_face() {
+    let options = plain(View::FRONT);
+    let seen = drawn(&open_cube(), &options);
+    assert!(count(&seen, is_rust) > 15_000, "{}", count(&seen, is_rust));
+    assert_eq!(count(&drawn(&open_cube(), &plain(View::BACK)), is_rust), 0);
+}
+
+#[test]
+fn defects_are_coloured_only_when_asked_for() {
+    let red = |[r, g, b, _]: [u8; 4]| r > 200 && g < 40 && b < 60;
+    let magenta = |[r, g, b, _]: [u8; 4]| r > 200 && g < 40 && b > 180;
+    let yellow = |[r, g, b, _]: [u8; 4]| r > 150 && g > 80 && b < 60;
+    let (without, with) = (plain(View::ISO), RenderOptions { defects: true, ..plain(View::ISO) });
+
+    assert!(count(&drawn(&open_cube(), &with), red) > 100);
+    assert_eq!(count(&drawn(&open_cube(), &without), red), 0);
+
+    let mut crossed = cube(DVec3::ZERO);
+    crossed.append(&cube(DVec3::splat(0.5)));
+    assert!(count(&drawn(&crossed, &with), yellow) > 1000);
+    assert_eq!(count(&drawn(&crossed, &without), yellow), 0);
+
+    let mut joined = cube(DVec3::ZERO);
+    joined.append(&cube(DVec3::new(1.0, 0.0, -1.0)));
+    assert!(count(&drawn(&joined, &with), magenta) > 20);
+    assert_eq!(count(&drawn(&joined, &without), magenta), 0);
+}
+
+#[test]
+fn edges_are_drawn_where_they_are_seen() {
+    let with = |view, edges| drawn(&cube(DVec3::ZERO), &RenderOptions { edges, ..plain(view) });
+    let (none, sharp, all) =
+        (with(View::ISO, EdgeDrawing::None), with(View::ISO, EdgeDrawing::Sharp), with(View::ISO, EdgeDrawing::All));
+    let changed = |a: &Image, b: &Image| {
+        let pairs = a.rgba.as_chunks::<4>().0.iter().zip(b.rgba.as_chunks::<4>().0);
+        pairs.filter(|(a, b)| a[0].abs_diff(b[0]) > 15 || a[3].abs_diff(b[3]) > 15).count()
+    };
+    // Nine of the twelve edges are seen, 50 to 80 pixels long, and one diagonal on each of three faces.
+    let (outlines, diagonals) = (changed(&none, &sharp), changed(&sharp, &all));
+    assert!((600..1500).contains(&outlines), "{outlines}");
+    assert!((100..500).contains(&diagonals), "{diagonals}");
+    // Straight on, only the outline is sharp, and nothing of the far side shows.
+    let (bare, front) = (with(View::FRONT, EdgeDrawing::None), with(View::FRONT, EdgeDrawing::Sharp));
+    let inner = |image: &Image| -> Vec<_> { (40..160).map(|x| image.pixel(x, x - 25)).collect() };
+    assert_eq!(inner(&front), inner(&bare));
+    assert_ne!(front, bare);
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let mut mesh = cube(DVec3::ZERO);
+    mesh.append(&cube(DVec3::new(0.6, 0.3, 0.2)));
+    mesh.append(&open_cube());
+    let options = RenderOptions { defects: true, edges: EdgeDrawing::All, ..plain(View::ISO) };
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| drawn(&mesh, &options))
+    };
+    let one = run(1);
+    assert_eq!(one, run(2));
+    assert_eq!(one, run(5));
+}
+
+#[test]
+fn the_size_of_the_coordinates_does_not_matter() {
+    let options = plain(View::ISO);
+    let expected = drawn(&cube(DVec3::ZERO), &options);
+    for exponent in [-500, -126, 127, 500] {
+        let mut mesh = cube(DVec3::ZERO);
+        mesh.positions.iter_mut().for_each(|p| *p *= 2f64.powi(exponent));
+        assert_eq!(drawn(&mesh, &options), expected, "{exponent}");
+    }
+}
+
+#[test]
+fn hollows_are_darker_and_convex_bodies_as_light_as_ever() {
+    let brightness = |mesh: &TriMesh, occlusion, x, y| {
+        let image = drawn(mesh, &RenderOptions { occlusion, ..plain(View::TOP) });
+        image.pixel(x, y).map(|p| p[..3].iter().map(|&c| u32::from(c)).sum::<u32>()).unwrap()
+    };
+    // Seen from above into a box without a lid, near a wall.
+    let mut open = cube(DVec3::ZERO);
+    open.triangles.drain(4..6);
+    open.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+    let (dim, bright) = (brightness(&open, true, 36, 75), brightness(&open, false, 36, 75));
+    assert!(dim + 20 < bright, "{dim} {bright}");
+    let closed = cube(DVec3::ZERO);
+    assert_eq!(brightness(&closed, true, 100, 75), brightness(&closed, false, 100, 75));
+}
+
+#[test]
+fn closed_surfaces_have_no_pinholes() {
+    // A lattice that falls on sample positions in x and y, turned and not.
+    let mut mesh = TriMesh::default();
+    for k in 0..4 {
+        mesh.append(&cube(DVec3::new(f64::from(k), f64::from(k % 2), 0.0)));
+    }
+    for view in [View::ISO, View::TOP, View::ISO.y_up(), View { from: DVec3::new(1.0, 2.0, 3.0), up: DVec3::X }] {
+        let image = drawn(&mesh, &RenderOptions { occlusion: false, ..plain(view) });
+        assert_eq!(count(&image, is_rust), 0);
+    }
+    let image = drawn(&cube(DVec3::ZERO), &plain(View::TOP));
+    let row = |y: u32| (0..200).filter(|&x| image.pixel(x, y).is_some_and(|p| p[3] == 255)).count();
+    assert!((20..130).all(|y| row(y) == row(75)));
+}
+
+#[test]
+fn pairs_are_seen_by_one_camera() {
+    let mut before = cube(DVec3::ZERO);
+    before.append(&cube(DVec3::new(3.0, 0.0, 0.0)));
+    let after = cube(DVec3::ZERO);
+    let options = RenderOptions { occlusion: false, ..plain(View::FRONT) };
+    let [a, b] = render_pair(&before, &after, &options, &Progress::none()).unwrap();
+    let left_half = |i: &Image| -> Vec<_> {
+        (0..150).flat_map(|y| (0..100).map(move |x| (x, y))).map(|(x, y)| i.pixel(x, y)).collect()
+    };
+    assert_eq!(left_half(&a), left_half(&b));
+    assert!(count(&b, |p| p[3] > 0) * 2 <= count(&a, |p| p[3] > 0) + 20);
+    let [a, empty] = render_pair(&before, &TriMesh::default(), &options, &Progress::none()).unwrap();
+    assert!(count(&a, |p| p[3] > 0) > 0 && count(&empty, |p| p[3] > 0) == 0);
+}
+
+#[test]
+fn sheets_hold_the_images_beside_each_other() {
+    let image =
+        |width, height, colour: [u8; 4]| Image { width, height, rgba: colour.repeat((width * height) as usize) };
+    let sheet = Image::beside(&[image(100, 60, [9; 4]), image(50, 20, [7; 4])]);
+    assert_eq!((sheet.width, sheet.height), (152, 60));
+    let at = |x, y| sheet.pixel(x, y).unwrap()[0];
+    assert_eq!(
+        [at(0, 0), at(99, 59), at(100, 30), at(102, 19), at(102, 20), at(151, 39), at(151, 40)],
+        [9, 9, 9, 9, 7, 7, 9]
+    );
+    assert_eq!(sheet.pixel(152, 0), None);
+    let nothing = Image::beside(&[]);
+    assert_eq!((nothing.width, nothing.height), (0, 0));
+    assert!(nothing.to_png().is_err());
+}
+
+#[test]
+fn png_files_decode_to_the_same_pixels() {
+    let image = drawn(&cube(DVec3::ZERO), &plain(View::ISO));
+    let file = image.to_png().unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
+    let mut rgba = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut rgba).unwrap();
+    assert_eq!(Image { width: info.width, height: info.height, rgba }, image);
+}
+
+#[test]
+fn what_cannot_be_drawn_is_an_error() {
+    let mesh = cube(DVec3::ZERO);
+    let error = |mesh: &TriMesh, options: &RenderOptions| render(mesh, options, &Progress::none()).unwrap_err();
+    assert_eq!(error(&TriMesh::default(), &plain(View::ISO)), RenderError::Empty);
+    for (width, height, supersampling) in [(0, 5, 1), (5, 20_000, 1), (5, 5, 0), (5, 5, 9), (16_384, 16_384, 1)] {
+        let options = RenderOptions { width, height, supersampling, ..plain(View::ISO) };
+        assert_eq!(error(&mesh, &options), RenderError::Size { width, height, supersampling });
+    }
+    let late = Progress::none().with_deadline(std::time::Instant::now());
+    let stopped = render(&mesh, &plain(View::ISO), &late);
+    assert_eq!(stopped, Err(RenderError::Stopped(Stopped::Deadline)));
+}
+
+#[test]
+fn odd_meshes_and_views_are_drawn_without_panic() {
+    let point = TriMesh { positions: vec![DVec3::ONE; 3], triangles: vec![[0, 1, 2], [0, 0, 0]] };
+    let line = TriMesh { positions: vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0], triangles: vec![[0, 1, 2]] };
+    let same = TriMesh { positions: cube(DVec3::ZERO).positions, triangles: vec![[0, 1, 7]; 5000] };
+    let mut wide = cube(DVec3::ZERO);
+    wide.positions[3] = DVec3::new(1e308, -1e308, 1e308);
+    let views = [View::ISO, View { from: DVec3::ZERO, up: DVec3::ZERO }, View { from: DVec3::X, up: DVec3::X }];
+    for mesh in [point, line, same, wide] {
+        for view in views {
+            let options = RenderOptions { defects: true, edges: EdgeDrawing::All, ..plain(view) };
+            assert_eq!(drawn(&mesh, &options).rgba.len(), 120_000);
+        }
+    }
+}
+
+#[test]
+fn views_are_known_by_name() {
+    assert!(View::NAMES.iter().all(|name| View::named(name).is_some()));
+    assert_eq!(View::named("front"), Some(View::FRONT));
+    assert_eq!(View::named("inside"), None);
+    assert_eq!(View::FRONT.y_up(), View { from: DVec3::Z, up: DVec3::Y });
+}
