@@ -116,7 +116,9 @@ fn thin(pipeline: &Report, unit: UnitName<'_>) -> Option<String> {
     let told = thin.thin_spans as f64 > THIN_WALLS_TOLD * thin.spans as f64;
     let share = words::percent(thin.thin_spans, thin.spans);
     let keeps = words::with_unit(&words::rounded_down(keeps), unit).replace(' ', "");
-    told.then(|| format!("{share} of the walls are under 2 voxels thick and may have suffered; --voxel {keeps} would keep them"))
+    told.then(|| {
+        format!("{share} of the walls are under 2 voxels thick and may have suffered; --voxel {keeps} would keep them")
+    })
 }
 
 fn solid(validity: &Validity, unit: UnitName<'_>) -> String {
