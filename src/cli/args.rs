@@ -204,7 +204,7 @@ pub struct SolidArgs {
     #[arg(long, value_enum, default_value_t = OrientChoice::Auto)]
     pub orient: OrientChoice,
     /// How rays that disagree are settled
-    #[arg(long, value_enum, default_value_t = VoteChoice::HalfRays)]
+    #[arg(long, value_enum, default_value_t = VoteChoice::Winding)]
     pub vote: VoteChoice,
     /// Keep the vertices of every voxel apart: more triangles
     #[arg(long)]
@@ -295,6 +295,8 @@ impl From<OrientChoice> for OrientMode {
 /// `--vote`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum VoteChoice {
+    /// The rays where ten or more balance and agree; elsewhere the winding number
+    Winding,
     /// The majority of the rays that balance; where they are few, their halves
     HalfRays,
     /// The majority of the rays that balance
@@ -306,6 +308,7 @@ pub enum VoteChoice {
 impl From<VoteChoice> for VoteRule {
     fn from(choice: VoteChoice) -> Self {
         match choice {
+            VoteChoice::Winding => Self::Winding,
             VoteChoice::HalfRays => Self::HalfRays,
             VoteChoice::Majority => Self::Majority,
             VoteChoice::Paper => Self::Paper,

@@ -3,7 +3,7 @@
 use glam::IVec3;
 
 use super::{VoteRule, Winding};
-use crate::lattice::{BRICK, BRICK_VOXELS, Direction};
+use crate::lattice::{BRICK, BRICK_VOXELS, Direction, index_in_brick};
 use crate::ldi::{Expression, Hit, Operands, Spans};
 
 /// Below this many valid votes the half-rays decide ([`VoteRule::HalfRays`]), and a voxel is
@@ -94,15 +94,31 @@ impl Jury<'_> {
                 votes.is_inside = self.decide(*votes, base + voxel_in_brick(8 * row + x));
             }
         }
+        if self.rule == VoteRule::Winding {
+            self.ask_winding(base, &mut votes);
+        }
         votes
     }
 
     fn decide(&self, votes: Votes, voxel: IVec3) -> bool {
         match self.rule {
             VoteRule::Paper => 2 * votes.inside > 13,
-            VoteRule::Winding if !votes.clear() => self.winding.is_inside(voxel, self.expression),
             VoteRule::HalfRays if votes.valid < FEW => self.ask_half_rays(votes, voxel),
             _ => 2 * votes.inside > votes.valid,
+        }
+    }
+
+    /// Decides the voxels that are not clear, a block of 4³ at a time.
+    fn ask_winding(&self, base: IVec3, votes: &mut [Votes; BRICK_VOXELS]) {
+        for block in 0..8 {
+            let first = IVec3::new(block & 1, block >> 1 & 1, block >> 2) * 4;
+            let offsets = (0..64).map(|n| IVec3::new(n & 3, n >> 2 & 3, n >> 4));
+            let unclear: Vec<IVec3> = offsets.filter(|&k| !votes[index_in_brick(first + k)].clear()).collect();
+            if !unclear.is_empty() {
+                self.winding.decide(base + first, &unclear, self.expression, |k, inside| {
+                    votes[index_in_brick(first + k)].is_inside = inside;
+                });
+            }
         }
     }
 
