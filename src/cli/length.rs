@@ -125,15 +125,15 @@ impl Length {
     }
 }
 
-/// Bytes: a plain number, `K M G T` and `KiB` … (powers of 1024), or `kB MB GB TB` (powers of 1000).
+/// Bytes: a plain number, `K M G T` or `kB MB GB TB` (powers of 1000), or `KiB MiB GiB TiB` (powers of 1024).
 pub fn parse_size(text: &str) -> Result<u64, QuantityError> {
     let malformed = || QuantityError::Malformed { text: text.into(), wanted: A_SIZE };
     let (value, suffix) = split(text).ok_or_else(malformed)?;
     let lower = suffix.to_ascii_lowercase();
     let (letter, base) = match lower.as_bytes() {
         [] | [b'b'] => (b'b', 1),
-        [letter] | [letter, b'i', b'b'] => (*letter, 1024_u64),
-        [letter, b'b'] => (*letter, 1000),
+        [letter] | [letter, b'b'] => (*letter, 1000_u64),
+        [letter, b'i', b'b'] => (*letter, 1024),
         _ => return Err(malformed()),
     };
     let power = match letter {
@@ -223,9 +223,9 @@ mod tests {
     fn sizes_in_both_bases() {
         for (text, bytes) in [
             ("1500000", 1_500_000),
-            ("500M", 500 << 20),
-            ("2G", 2 << 30),
-            ("2g", 2 << 30),
+            ("500M", 500_000_000),
+            ("2G", 2_000_000_000),
+            ("2GiB", 2 << 30),
             ("1.5KiB", 1536),
             ("3MB", 3_000_000),
             ("7b", 7),
