@@ -1,0 +1,72 @@
+//! Generated meshes and the first stages, for the benches of the later ones.
+
+#![allow(dead_code)] // each bench uses its own part
+
+use glam::DVec3;
+use meshwright::lattice::{Grid, Lattice};
+use meshwright::ldi::{Expression, Layers, Operands, Spans, ldis, spans};
+use meshwright::mesh::{Plane, TriMesh};
+use meshwright::progress::Progress;
+use meshwright::vote::{Jury, VoteRule, Votes, Winding, vote_near_surface};
+
+/// A bumpy torus of 2 × `around` × `around / 2` triangles; with `holes`, every 97th is missing.
+pub fn torus(around: u32, holes: bool) -> TriMesh {
+    let tube = around / 2;
+    let turn = std::f64::consts::TAU;
+    let vertex = |n: u32| {
+        let (a, t) = (turn * (n / tube) as f64 / around as f64, turn * (n % tube) as f64 / tube as f64);
+        let radius = 0.35 + 0.03 * (9.0 * a).sin() * (5.0 * t).cos();
+        let r = 1.0 + radius * t.cos();
+        DVec3::new(r * a.cos(), r * a.sin(), radius * t.sin())
+    };
+    let index = |i: u32, j: u32| (i % around) * tube + j % tube;
+    let quad = |n: u32| {
+        let (i, j) = (n / tube, n % tube);
+        let [a, b, c, d] = [index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    let mut triangles: Vec<[u32; 3]> = (0..around * tube).flat_map(quad).collect();
+    if holes {
+        let mut n = 0;
+        triangles.retain(|_| {
+            n += 1;
+            n % 97 != 0
+        });
+    }
+    TriMesh { positions: (0..around * tube).map(vertex).collect(), triangles }
+}
+
+/// A mesh with all that comes before its vote.
+pub struct Ready {
+    pub mesh: TriMesh,
+    pub lattice: Lattice,
+    pub operands: Operands,
+    pub spans: Vec<Spans>,
+    pub planes: Vec<Plane>,
+}
+
+pub fn layers(mesh: &TriMesh, lattice: &Lattice) -> Vec<Layers> {
+    ldis(mesh, lattice, 1, &Progress::none()).expect("nobody stops it")
+}
+
+pub fn ready(mesh: TriMesh, resolution: u32) -> Ready {
+    let bounds = mesh.bounds().expect("triangles");
+    let lattice = Lattice::around(&bounds, bounds.size().max_element() / resolution as f64);
+    let operands = Operands::new([mesh.triangles.len()]);
+    let cut = |layers| spans(layers, &operands, &Expression::Operand(0));
+    let spans = layers(&mesh, &lattice).into_iter().map(cut).collect();
+    let corners = |t| mesh.corners(t).map(|p| lattice.to_lattice(p));
+    let planes = (0..mesh.triangles.len()).map(|t| Plane::through(corners(t))).collect();
+    Ready { mesh, lattice, operands, spans, planes }
+}
+
+impl Ready {
+    pub fn votes(&self) -> Grid<Votes> {
+        let winding = Winding::new(&self.mesh, &self.operands, &self.lattice);
+        let expression = Expression::Operand(0);
+        let rule = VoteRule::default();
+        let jury =
+            Jury { spans: &self.spans, operands: &self.operands, expression: &expression, rule, winding: &winding };
+        vote_near_surface(&jury, &Progress::none()).expect("nobody stops it")
+    }
+}

@@ -1,0 +1,25 @@
+//! The robust distance, and marching it to a band of 8 h.
+
+mod common;
+
+use divan::Bencher;
+use meshwright::progress::Progress;
+use meshwright::sdf::{RobustOptions, march, robust};
+
+fn main() {
+    divan::main();
+}
+
+#[divan::bench(args = [64, 128, 256])]
+fn robust_field(bencher: Bencher<'_, '_>, resolution: u32) {
+    let ready = common::ready(common::torus(256, true), resolution);
+    let votes = ready.votes();
+    bencher.bench(|| robust(&ready.spans, &ready.planes, &votes, &RobustOptions::default()));
+}
+
+#[divan::bench(args = [64, 128])]
+fn march_to_8(bencher: Bencher<'_, '_>, resolution: u32) {
+    let ready = common::ready(common::torus(256, false), resolution);
+    let near = robust(&ready.spans, &ready.planes, &ready.votes(), &RobustOptions::default());
+    bencher.bench(|| march(&near, &ready.lattice, 8.0, &Progress::none()));
+}
