@@ -53,7 +53,7 @@ pub(crate) struct Edge<'a> {
 
 impl Edge<'_> {
     /// The half-edges, ascending.
-    pub(crate) fn halves(&self) -> impl Iterator<Item = u32> + '_ {
+    pub(crate) fn halves(&self) -> impl Iterator<Item = u32> + Clone + '_ {
         self.entries.iter().map(|&entry| entry as u32)
     }
 
@@ -141,16 +141,18 @@ pub(crate) struct Connectivity {
 }
 
 /// Disjoint sets, joined by the smaller root.
-struct Union {
+pub(crate) struct Union {
     parent: Vec<u32>,
 }
 
 impl Union {
-    fn new(size: usize) -> Self {
+    /// Sets of one: 0 to `size` - 1.
+    pub(crate) fn new(size: usize) -> Self {
         Self { parent: (0..size as u32).collect() }
     }
 
-    fn root(&mut self, mut of: u32) -> u32 {
+    /// The smallest member of the set of `of`.
+    pub(crate) fn root(&mut self, mut of: u32) -> u32 {
         while self.parent[of as usize] != of {
             let above = self.parent[self.parent[of as usize] as usize];
             self.parent[of as usize] = above;
@@ -160,7 +162,7 @@ impl Union {
     }
 
     /// Joins the sets of `a` and `b`; false if they were one already.
-    fn join(&mut self, a: u32, b: u32) -> bool {
+    pub(crate) fn join(&mut self, a: u32, b: u32) -> bool {
         let (a, b) = (self.root(a), self.root(b));
         self.parent[a.max(b) as usize] = a.min(b);
         a != b

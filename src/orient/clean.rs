@@ -3,8 +3,11 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::edges::{UNIQUE_EDGE_LIMIT, sorted_half_edges};
 use crate::mesh::TriMesh;
+use crate::mesh::edges::{Edges, Union};
+
+/// Edges with more triangles than this have no say about membranes.
+const MOST_ON_AN_EDGE: usize = 16;
 
 /// The soup after cleaning.
 #[derive(Debug, Clone, Default)]
@@ -80,47 +83,31 @@ fn drop_membranes(cleaned: &mut Cleaned) {
     if !cleaned.unoriented.contains(&true) {
         return;
     }
-    let half_edges = sorted_half_edges(&cleaned.mesh.triangles);
-    let mut group: Vec<u32> = (0..cleaned.mesh.triangles.len() as u32).collect();
-    for edge in half_edges.chunk_by(|a, b| a.ends == b.ends) {
-        let mut sided = edge.iter().filter(|h| cleaned.unoriented[h.triangle as usize]).map(|h| h.triangle);
+    let unoriented = &cleaned.unoriented;
+    let edges = Edges::new(&cleaned.mesh.triangles, cleaned.mesh.positions.len());
+    let mut group = Union::new(unoriented.len());
+    edges.each(|edge| {
+        let mut sided = edge.halves().map(|half| half / 3).filter(|&t| unoriented[t as usize]);
         if let Some(first) = sided.next() {
-            sided.for_each(|t| join(&mut group, first, t));
+            sided.for_each(|t| _ = group.join(first, t));
         }
-    }
+    });
     // A rim edge with an even number of other triangles speaks for dropping the group.
-    let mut balance = vec![0i64; group.len()];
-    for edge in half_edges.chunk_by(|a, b| a.ends == b.ends).filter(|edge| edge.len() <= UNIQUE_EDGE_LIMIT) {
-        let others = edge.iter().filter(|h| !cleaned.unoriented[h.triangle as usize]).count();
-        for h in edge.iter().filter(|h| cleaned.unoriented[h.triangle as usize]) {
-            if others > 0 {
-                balance[root(&mut group, h.triangle) as usize] += if others % 2 == 0 { 1 } else { -1 };
-            }
+    let mut balance = vec![0i64; unoriented.len()];
+    edges.each(|edge| {
+        let sided = edge.halves().map(|half| half / 3).filter(|&t| unoriented[t as usize]);
+        let others = edge.count() - sided.clone().count();
+        if others > 0 && edge.count() <= MOST_ON_AN_EDGE {
+            sided.for_each(|t| balance[group.root(t) as usize] += if others % 2 == 0 { 1 } else { -1 });
         }
-    }
+    });
     let drop: Vec<bool> =
-        (0..group.len()).map(|t| cleaned.unoriented[t] && balance[root(&mut group, t as u32) as usize] > 0).collect();
+        (0..unoriented.len()).map(|t| unoriented[t] && balance[group.root(t as u32) as usize] > 0).collect();
     let keep = |t: &usize| !drop[*t];
     let all = 0..drop.len();
     cleaned.mesh.triangles = all.clone().filter(keep).map(|t| cleaned.mesh.triangles[t]).collect();
     cleaned.source = all.clone().filter(keep).map(|t| cleaned.source[t]).collect();
     cleaned.unoriented = all.filter(keep).map(|t| cleaned.unoriented[t]).collect();
-}
-
-/// Root of `t` in a union-find forest, with path halving.
-pub(super) fn root(forest: &mut [u32], mut t: u32) -> u32 {
-    while forest[t as usize] != t {
-        let up = forest[forest[t as usize] as usize];
-        forest[t as usize] = up;
-        t = up;
-    }
-    t
-}
-
-/// Joins the sets of `a` and `b`; the smaller root stays.
-pub(super) fn join(forest: &mut [u32], a: u32, b: u32) {
-    let (a, b) = (root(forest, a), root(forest, b));
-    forest[a.max(b) as usize] = a.min(b);
 }
 
 #[cfg(test)]
@@ -143,6 +130,56 @@ mod tests {
         assert_eq!((cleaned.degenerate, cleaned.duplicates, cleaned.both_sided), (1, 4, 1));
         // [0,3,2] was there twice, its reverse [2,3,0] once: the majority decides.
         assert!(!cleaned.unoriented.contains(&true));
+    }
+
+    #[test]
+    fn of_doubled_faces_with_half_of_the_copies_reversed_one_each_is_left() {
+        let mut mesh = tetrahedron();
+        let copies: Vec<[u32; 3]> = mesh.triangles.iter().map(|&[a, b, c]| [b, c, a]).collect();
+        mesh.triangles.extend(copies);
+        mesh.triangles[4].swap(0, 1);
+        mesh.triangles[6].swap(0, 1);
+        let cleaned = clean(&mesh);
+        assert_eq!((cleaned.duplicates, cleaned.both_sided), (4, 2));
+        // One of each pair: either of a pair that disagrees, the first of one that agrees.
+        let mut left: Vec<(u32, bool)> = cleaned.source.iter().map(|t| t % 4).zip(cleaned.unoriented).collect();
+        left.sort_unstable();
+        assert_eq!(left, [(0, true), (1, false), (2, true), (3, false)]);
+        assert!(cleaned.source.contains(&1) && cleaned.source.contains(&3));
+    }
+
+    #[test]
+    fn a_membrane_of_two_triangles_between_boxes_that_share_a_face_goes() {
+        // Two unit boxes side by side; between them four triangles over the vertices 1, 3, 5, 7.
+        let positions = (0..12u32).map(|n| match n {
+            0..8 => DVec3::new((n & 1) as f64, (n >> 1 & 1) as f64, (n >> 2) as f64),
+            _ => DVec3::new(2.0, (n & 1) as f64, (n >> 1 & 1) as f64),
+        });
+        let quads = |v: [u32; 8]| {
+            let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+            sides.map(|s| s.map(|k: usize| v[k])).into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])
+        };
+        let (left, right) = ([0, 1, 2, 3, 4, 5, 6, 7], [1, 8, 3, 9, 5, 10, 7, 11]);
+        let mut mesh = TriMesh { positions: positions.collect(), triangles: quads(left).chain(quads(right)).collect() };
+        // The right box has the diagonal of the shared face the other way round: make it the same.
+        let shared = mesh.triangles[10..12].to_vec();
+        mesh.triangles[20..22].copy_from_slice(&[0, 1].map(|k| [shared[k][0], shared[k][2], shared[k][1]]));
+        let cleaned = clean(&mesh);
+        assert_eq!(cleaned.both_sided, 2);
+        assert_eq!(cleaned.mesh.triangles.len(), 20);
+        assert!(!cleaned.unoriented.contains(&true));
+        // Without the membrane the outer hull is one closed patch.
+        let edges = Edges::new(&cleaned.mesh.triangles, cleaned.mesh.positions.len());
+        edges.each(|edge| assert_eq!(edge.count(), 2));
+    }
+
+    #[test]
+    fn a_both_sided_lid_of_an_open_body_stays() {
+        let mut mesh = tetrahedron();
+        mesh.triangles.push([1, 3, 2]);
+        let cleaned = clean(&mesh);
+        assert_eq!(cleaned.mesh.triangles.len(), 4);
+        assert_eq!(cleaned.unoriented.iter().filter(|&&sided| sided).count(), 1);
     }
 
     #[test]

@@ -2,7 +2,6 @@
 //! consistent, and the rays of the LDIs decide which of its sides is outside.
 
 mod clean;
-mod edges;
 mod patches;
 mod sides;
 

@@ -1,7 +1,7 @@
 //! Consistent orientation within edge-connected patches.
 
 use super::OrientMode;
-use super::edges::sorted_half_edges;
+use crate::mesh::edges::Edges;
 
 /// The patches of a soup.
 #[derive(Debug, Clone, Default)]
@@ -60,22 +60,24 @@ pub fn orient_patches(triangles: &mut [[u32; 3]], unoriented: &[bool], mode: Ori
     patches
 }
 
-/// For each triangle and side: the triangle across (`u32::MAX`: not exactly one), and whether it
-/// runs along the edge the same way.
+/// For each triangle the up to three that share an edge with it and nobody else (`u32::MAX`: none),
+/// in the order of the edges, and whether the two run along the edge the same way.
 fn neighbours(triangles: &[[u32; 3]]) -> Vec<[(u32, bool); 3]> {
     let mut neighbours = vec![[(u32::MAX, false); 3]; triangles.len()];
-    let half_edges = sorted_half_edges(triangles);
-    for edge in half_edges.chunk_by(|a, b| a.ends == b.ends) {
-        if let [a, b] = edge {
-            let same_way = a.forward == b.forward;
+    let vertices = triangles.iter().flatten().max().map_or(0, |&v| v as usize + 1);
+    let edges = Edges::new(triangles, vertices);
+    edges.each(|edge| {
+        let mut halves = edge.halves();
+        if let (Some(a), Some(b), 2) = (halves.next(), halves.next(), edge.count()) {
+            let same_way = edges.runs_up(a) == edges.runs_up(b);
             for (from, to) in [(a, b), (b, a)] {
-                let free = neighbours[from.triangle as usize].iter_mut().find(|n| n.0 == u32::MAX);
+                let free = neighbours[from as usize / 3].iter_mut().find(|n| n.0 == u32::MAX);
                 if let Some(free) = free {
-                    *free = (to.triangle, same_way);
+                    *free = (to / 3, same_way);
                 }
             }
         }
-    }
+    });
     neighbours
 }
 
@@ -95,5 +97,49 @@ mod tests {
     fn triangles_that_share_only_a_vertex_are_two_patches() {
         let mut triangles = vec![[0, 1, 2], [2, 3, 4]];
         assert_eq!(orient_patches(&mut triangles, &[false; 2], OrientMode::Auto).of, [0, 1]);
+    }
+
+    #[test]
+    fn patches_that_meet_only_in_an_edge_of_four_triangles_stay_apart() {
+        // Two tetrahedra on the edge 0-1, the second one inside out.
+        let mut triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
+        triangles.extend([[0, 1, 4], [0, 5, 1], [1, 5, 4], [0, 4, 5]]);
+        let before = triangles.clone();
+        let patches = orient_patches(&mut triangles, &[false; 8], OrientMode::Auto);
+        assert_eq!(patches.of, [0, 0, 0, 0, 1, 1, 1, 1]);
+        assert_eq!((patches.count, patches.flipped), (2, 0));
+        assert_eq!(triangles, before);
+    }
+
+    #[test]
+    fn a_moebius_strip_is_one_patch_and_keeps_one_seam() {
+        // Vertices 2i below and 2i + 1 above; the last quad joins on upside down.
+        let n = 8;
+        let at = |i: u32, side: u32| if i < n { 2 * i + side } else { 1 - side };
+        let quad = |i: u32| [[at(i, 0), at(i + 1, 0), at(i + 1, 1)], [at(i, 0), at(i + 1, 1), at(i, 1)]];
+        let mut triangles: Vec<[u32; 3]> = (0..n).flat_map(quad).collect();
+        triangles[5].swap(1, 2);
+        let patches = orient_patches(&mut triangles, &[false; 16], OrientMode::Auto);
+        assert_eq!(patches.count, 1);
+        let edges = Edges::new(&triangles, 2 * n as usize);
+        let mut seams = 0;
+        edges.each(|edge| {
+            let up = edge.halves().filter(|&half| edges.runs_up(half)).count();
+            seams += usize::from(edge.count() == 2 && up != 1);
+        });
+        assert_eq!(seams, 1);
+    }
+
+    #[test]
+    fn unoriented_triangles_have_no_say_and_keep_turns_nothing() {
+        let wrong = [[0, 1, 2], [0, 3, 1], [3, 2, 1], [0, 3, 2]];
+        let mut triangles = wrong.to_vec();
+        // Three of four are turned, but only the fourth counts.
+        let patches = orient_patches(&mut triangles, &[true, true, true, false], OrientMode::Auto);
+        assert_eq!(patches.flipped, 3);
+        assert_eq!(triangles[3], [0, 3, 2]);
+        let mut kept = wrong.to_vec();
+        assert_eq!(orient_patches(&mut kept, &[false; 4], OrientMode::Keep).flipped, 0);
+        assert_eq!(kept, wrong);
     }
 }
