@@ -225,7 +225,7 @@ fn count(direction: Direction, masks: &RayMasks, counts: &mut Counts) {
         for q in 0..BRICK {
             let row = (7 * shear_other.max(0) - shear_other * t + q) as usize;
             let at = (t * stride_main + q * stride_other) as usize;
-            counts.inside[at] += eight(&masks.inside[row], from_x) >> t & ONES;
+            counts.inside[at] += (eight(&masks.inside[row], from_x) >> t) & ONES;
             counts.valid[at] += eight(&masks.valid[row], from_x);
         }
     }
@@ -243,8 +243,8 @@ fn eight(row: &[u8; WIDE], start: usize) -> u64 {
 #[inline]
 fn spread(mask: u8) -> u64 {
     // Byte t keeps bit t alone; adding 127 carries it to the byte's highest bit.
-    let kept = mask as u64 * ONES & 0x8040_2010_0804_0201;
-    (kept + 0x7f7f_7f7f_7f7f_7f7f | kept) >> 7 & ONES
+    let kept = (mask as u64 * ONES) & 0x8040_2010_0804_0201;
+    (((kept + 0x7f7f_7f7f_7f7f_7f7f) | kept) >> 7) & ONES
 }
 
 #[cfg(test)]
