@@ -24,7 +24,7 @@ impl Samples {
 mod tests {
     use super::*;
 
-    /// Counts in each of 4³ boxes differ by far less than chance would make them.
+    /// No box of 4³ is off by more than 5 %; chance alone is off by 8 % and more in the worst one.
     #[test]
     fn samples_fill_the_cube_evenly() {
         let count = 64_000;
@@ -37,6 +37,6 @@ mod tests {
             let cell = |x: f64| (x * 4.0) as usize;
             filled[cell(at) + 4 * cell(u) + 16 * cell(v)] += 1;
         }
-        assert!(filled.iter().all(|n| (n - 1000).abs() < 20), "{filled:?}");
+        assert!(filled.iter().all(|n| (n - 1000).abs() <= 50), "{filled:?}");
     }
 }
