@@ -1,5 +1,7 @@
 //! The command line as users meet it: real processes, real files.
 
+#[path = "cli/compare.rs"]
+mod compare;
 #[path = "cli/files.rs"]
 mod files;
 #[path = "cli/solids.rs"]

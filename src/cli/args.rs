@@ -55,6 +55,9 @@ pub enum Verb {
     /// Say what is in a mesh file and what is wrong with it
     #[command(after_help = EXIT_CODES)]
     Inspect(InspectArgs),
+    /// Measure how far two meshes are from each other
+    #[command(after_help = EXIT_CODES)]
+    Compare(CompareArgs),
     /// Write the same triangles in another format; nothing is repaired
     #[command(after_help = EXIT_CODES)]
     Convert(ConvertArgs),
@@ -120,6 +123,35 @@ pub struct InspectArgs {
     #[arg(long, value_name = "DEFECT", value_delimiter = ',', value_enum)]
     pub fail_on: Vec<Defect>,
     /// How the input is read.
+    #[command(flatten)]
+    pub reading: InputArgs,
+    /// Flags of every verb.
+    #[command(flatten)]
+    pub common: CommonArgs,
+}
+
+/// `compare A B`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// The reference
+    #[arg(value_name = "A")]
+    pub a: PathBuf,
+    /// The mesh that is judged
+    #[arg(value_name = "B")]
+    pub b: PathBuf,
+    /// Write B, coloured by its signed distance from A, to this file
+    #[arg(long, value_name = "FILE.ply")]
+    pub map: Option<PathBuf>,
+    /// Points on each mesh at which distances are taken, besides all vertices
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+    pub samples: u32,
+    /// How near a sharp edge of the other mesh must be to count as found [default: 1/1024 of A's longest side]
+    #[arg(long, value_name = "LEN")]
+    pub tolerance: Option<Length>,
+    /// Exit with 3 when a point of one mesh is farther than this from the other
+    #[arg(long, value_name = "LEN")]
+    pub fail_on_max: Option<Length>,
+    /// How the inputs are read.
     #[command(flatten)]
     pub reading: InputArgs,
     /// Flags of every verb.

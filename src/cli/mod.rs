@@ -2,6 +2,7 @@
 
 mod args;
 mod boolean;
+mod compare;
 mod convert;
 mod csg;
 mod csg_parser;
@@ -65,6 +66,11 @@ fn dispatch(verb: &Verb) -> Exit {
         }
         Verb::Inspect(args) => {
             run("inspect", &args.common, &[&args.input], None, |session, report| inspect::run(args, session, report))
+        }
+        Verb::Compare(args) => {
+            run("compare", &args.common, &[&args.a, &args.b], args.map.as_deref(), |session, report| {
+                compare::run(args, session, report)
+            })
         }
         Verb::Convert(args) => run("convert", &args.common, &[&args.input], Some(&args.output), |session, report| {
             convert::run(args, session, report)

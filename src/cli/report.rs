@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::args::CommonArgs;
 use super::exit::{Exit, Failure};
 use super::input::is_stream;
+use crate::compare::Comparison;
 use crate::io;
 use crate::mesh::Validity;
 use crate::pipeline::{Plan, Report, StageTime};
@@ -41,6 +42,9 @@ pub struct RunReport {
     /// What the pipeline found and did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pipeline: Option<Report>,
+    /// What `compare` measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub comparison: Option<Comparison>,
     /// The written file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputEntry>,
@@ -120,6 +124,7 @@ impl RunReport {
             inputs: Vec::new(),
             plan: None,
             pipeline: None,
+            comparison: None,
             output: None,
             warnings: Vec::new(),
             stages: Vec::new(),

@@ -42,6 +42,7 @@ use crate::mesh::TriMesh;
 
 pub use error::{Place, ReadError, ReadProblem, WriteError, WriteProblem};
 pub use format::{Format, UnknownFormat};
+pub use ply::{VertexMap, encode_vertex_map};
 pub use save::save_bytes;
 pub use unit::{Unit, UnknownUnit};
 

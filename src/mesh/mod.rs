@@ -2,22 +2,29 @@
 //!
 //! [`TriMesh`] assumes nothing. [`validate`] counts what is wrong with one and measures it,
 //! [`defects`] says where, and both judge intersections by exact predicates. [`HalfEdges`] is the topology of
-//! a closed, oriented manifold while it is edited.
+//! a closed, oriented manifold while it is edited. [`ClosestTree`] finds the nearest triangle or segment, and
+//! [`Pseudonormals`] say on which side of it a point lies.
 
+mod closest;
 mod defects;
 pub(crate) mod edges;
 mod half_edges;
+mod nearest_point;
 mod plane;
 mod predicates;
+mod pseudonormals;
 mod self_intersection;
 mod tri_mesh;
 mod triangle_pair;
 mod validity;
 pub(crate) mod weld;
 
+pub use closest::{Closest, ClosestTree};
 pub use defects::{Defects, defects};
 pub use half_edges::{Compacted, HalfEdges, NotManifold, Ring};
+pub use nearest_point::{Feature, Shape};
 pub use plane::Plane;
+pub use pseudonormals::Pseudonormals;
 pub use self_intersection::{intersecting_triangles, self_intersections};
 pub use tri_mesh::{Bounds, TriMesh};
 pub use triangle_pair::triangles_intersect;

@@ -2,6 +2,7 @@
 
 mod header;
 mod rows;
+mod vertex_map;
 mod write;
 
 use glam::DVec3;
@@ -12,6 +13,7 @@ use super::error::{ReadError, ReadProblem};
 use super::soup::{Soup, too_many_vertices};
 use super::{Format, Loaded};
 
+pub use vertex_map::{VertexMap, encode_vertex_map};
 pub(super) use write::{write_ascii, write_binary};
 
 pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {

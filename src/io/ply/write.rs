@@ -7,17 +7,22 @@ use super::super::text::TextOut;
 use crate::mesh::TriMesh;
 
 fn header(mesh: &TriMesh, format: &str, single: bool) -> String {
+    header_with(mesh, format, single, "", "")
+}
+
+/// A header with more comments and more properties of vertices, each line ended by `\n`.
+pub(super) fn header_with(mesh: &TriMesh, format: &str, single: bool, comments: &str, properties: &str) -> String {
     let coordinate = if single { "float" } else { "double" };
     let index = if mesh.positions.len() <= i32::MAX as usize { "int" } else { "uint" };
     let (vertices, faces) = (mesh.positions.len(), mesh.triangles.len());
     format!(
-        "ply\nformat {format} 1.0\ncomment written by meshwright\n\
-         element vertex {vertices}\nproperty {coordinate} x\nproperty {coordinate} y\nproperty {coordinate} z\n\
+        "ply\nformat {format} 1.0\ncomment written by meshwright\n{comments}\
+         element vertex {vertices}\nproperty {coordinate} x\nproperty {coordinate} y\nproperty {coordinate} z\n{properties}\
          element face {faces}\nproperty list uchar {index} vertex_indices\nend_header\n"
     )
 }
 
-fn is_single(mesh: &TriMesh) -> bool {
+pub(super) fn is_single(mesh: &TriMesh) -> bool {
     mesh.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p)
 }
 

@@ -1,0 +1,201 @@
+//! `compare A B`: how far two meshes are from each other.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use super::args::CompareArgs;
+use super::exit::{Exit, Failure};
+use super::input::{self, Input, is_stream};
+use super::length::{Length, Scale};
+use super::output;
+use super::report::{OutputEntry, RunReport};
+use super::session::Session;
+use super::summary::{self, Row};
+use super::words::{self, UnitName};
+use crate::compare::{CompareOptions, Comparison, Relative, compare, deviation_map};
+use crate::io::{self, Format, Unit, VertexMap};
+
+/// Measures two files against each other and prints a table.
+pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
+    let paths: [&Path; 2] = [&args.a, &args.b];
+    if let Some(map) = &args.map {
+        check_map(map, &paths)?;
+    }
+    let mut inputs = report.timed("read", |_| input::read_all(&paths, &args.reading, session))?;
+    let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
+    report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
+    for input in &inputs {
+        report.warnings.extend(input.loaded.warnings.iter().cloned());
+    }
+    let [a, b] = inputs.as_slice() else { return Err(Failure::internal("two meshes were wanted")) };
+    let limits = Limits::of(args, a, unit)?;
+    report.options = json!({
+        "unit": unit.map(|unit| unit.to_string()),
+        "samples": args.samples, "tolerance": limits.tolerance, "fail_on_max": limits.largest,
+    });
+    let options = CompareOptions { samples: args.samples as usize, edge_tolerance: limits.tolerance };
+    let found = report.timed("compare", |_| compare(&a.loaded.mesh, &b.loaded.mesh, &options, &session.progress))?;
+    report.comparison = Some(found.clone());
+    for (input, measures) in [(a, &found.a), (b, &found.b)] {
+        if measures.area <= 0.0 {
+            return Err(Failure::input(format!("{}: no triangle has an area", input.label)));
+        }
+    }
+    if let Some(path) = &args.map {
+        report.output = Some(report.timed("map", |_| write_map(path, a, b, unit, session))?);
+    }
+    session.clear_bar();
+    let name = unit.map(|unit| unit.to_string());
+    if !args.common.json {
+        let mut text = summary::table(&rows(&found, [&a.label, &b.label], name.as_deref()));
+        for warning in &report.warnings {
+            text.push_str(&format!("note: {warning}\n"));
+        }
+        output::write_stream(text.as_bytes())?;
+    }
+    match (limits.largest, found.symmetric) {
+        (Some(limit), Some(distance)) if distance.max > limit => Err(Failure::new(
+            Exit::Limit,
+            format!(
+                "the largest distance is {}, and --fail-on-max allows {}",
+                words::length(distance.max, name.as_deref()),
+                words::length(limit, name.as_deref())
+            ),
+        )),
+        _ => Ok(Exit::Done),
+    }
+}
+
+/// The lengths of the command line, in model units.
+struct Limits {
+    tolerance: Option<f64>,
+    largest: Option<f64>,
+}
+
+impl Limits {
+    fn of(args: &CompareArgs, a: &Input, unit: Option<Unit>) -> Result<Self, Failure> {
+        let diagonal = a.loaded.mesh.bounds().map_or(0.0, |bounds| bounds.diagonal());
+        let scale = Scale { unit, diagonal, voxel: None };
+        let resolved = |length: Option<Length>| match length {
+            Some(Length::Voxels(_)) => Err(Failure::usage("a length in voxels (h) means nothing to compare")
+                .hint("0.4mm, 1% (of the diagonal of A) or a plain number in the file's units")),
+            Some(length) => Ok(Some(length.resolve(&scale)?)),
+            None => Ok(None),
+        };
+        Ok(Self { tolerance: resolved(args.tolerance)?, largest: resolved(args.fail_on_max)? })
+    }
+}
+
+/// Refuses maps that could not be written or would not be found.
+fn check_map(map: &Path, inputs: &[&Path]) -> Result<(), Failure> {
+    if is_stream(map) {
+        return Err(Failure::usage("--map wants a file"));
+    }
+    if let Some(other) = Format::from_path(map).filter(|format| *format != Format::Ply) {
+        return Err(Failure::usage(format!("--map writes PLY, and {} is named as {other}", map.display())));
+    }
+    if inputs.iter().any(|input| output::same_file(input, map)) {
+        return Err(Failure::usage(format!("--map {} is an input and would be overwritten", map.display())));
+    }
+    output::check_folder(map)
+}
+
+/// Writes B with its signed distances from A.
+fn write_map(path: &Path, a: &Input, b: &Input, unit: Option<Unit>, session: &Session) -> Result<OutputEntry, Failure> {
+    let mesh = &b.loaded.mesh;
+    let map = deviation_map(mesh, &a.loaded.mesh, &session.progress)?
+        .ok_or_else(|| Failure::input(format!("{}: no triangle has an area", a.label)))?;
+    let range = map.range;
+    let per = unit.map_or(String::new(), |unit| format!(" {unit}"));
+    let comments = [
+        "quality is the signed distance to the reference: negative inside it, positive outside".to_string(),
+        format!("colours: blue inside, white 0, red outside; full colour at {range}{per} (99th percentile) and beyond"),
+    ];
+    let quality: Vec<f32> = map.distances.iter().map(|&distance| distance as f32).collect();
+    let attributes = VertexMap { quality: &quality, colours: &map.colours(), comments: &comments };
+    let unwritable = |e: io::WriteError| Failure::internal(e.to_string());
+    let mut bytes = Vec::new();
+    io::encode_vertex_map(mesh, &attributes, &mut bytes).map_err(unwritable)?;
+    session.finish(|| io::save_bytes(path, |out| out.write_all(&bytes)).map_err(unwritable))?;
+    Ok(OutputEntry {
+        path: path.display().to_string(),
+        format: Format::Ply.to_string(),
+        bytes: bytes.len() as u64,
+        sha256: input::sha256(&bytes),
+        unit: unit.map(|unit| unit.to_string()),
+        validity: None,
+    })
+}
+
+/// The table.
+fn rows(found: &Comparison, labels: [&str; 2], unit: UnitName<'_>) -> Vec<Row> {
+    let mut rows: Vec<Row> = Vec::new();
+    for ((row, label), measures) in ["A", "B"].into_iter().zip(labels).zip([&found.a, &found.b]) {
+        let closed = if measures.closed { "closed" } else { "open" };
+        rows.push((row, format!("{label}: {}, {closed}", words::plural(measures.triangles, "triangle"))));
+    }
+    let ways = [("A to B", &found.a_to_b), ("B to A", &found.b_to_a)];
+    for (row, distances) in ways.into_iter().filter_map(|(row, d)| Some((row, d.as_ref()?))) {
+        let values = Relative { mean: distances.mean, rms: distances.rms, p99: distances.p99, max: distances.max };
+        let place = distances.max_at.map(words::number).join(" ");
+        rows.push((row, format!("{} at {place}", spread(values, |d| words::length(d, unit)))));
+    }
+    if let Some(both) = &found.symmetric {
+        let values = Relative { mean: both.mean, rms: both.rms, p99: both.p99, max: both.max };
+        rows.push(("both", spread(values, |d| words::length(d, unit))));
+        let diagonal = words::length(found.diagonal, unit);
+        rows.push(("both", format!("of A's diagonal ({diagonal}): {}", spread(both.relative, share))));
+    }
+    let volumes = [&found.a, &found.b].map(|m| words::volume(m.volume, unit));
+    rows.push(("volume", changed(volumes, found.volume_difference)));
+    let area = |area: f64| unit.map_or(words::number(area), |unit| format!("{} {unit}²", words::number(area)));
+    rows.push(("area", changed([area(found.a.area), area(found.b.area)], found.area_difference)));
+    if let Some(normals) = &found.normals {
+        let text = format!(
+            "{}° apart on average, over 10° on {} of A",
+            words::number(normals.mean_degrees),
+            share(normals.share_over_10_degrees)
+        );
+        rows.push(("normals", text));
+    }
+    rows.extend(sharp_rows(found, unit));
+    rows
+}
+
+fn sharp_rows(found: &Comparison, unit: UnitName<'_>) -> Vec<Row> {
+    let sharp = &found.sharp;
+    let within = words::length(sharp.tolerance, unit);
+    let row = |own: &str, other: &str, length: f64, found: Option<f64>| {
+        let text = found.map_or(format!("none in {own}"), |found| {
+            let length = words::length(length, unit);
+            format!("{length} long in {own}, {} of it within {within} of those of {other}", share(found))
+        });
+        ("sharp edges", text)
+    };
+    vec![row("A", "B", sharp.length_a, sharp.recall), row("B", "A", sharp.length_b, sharp.precision)]
+}
+
+fn spread(d: Relative, show: impl Fn(f64) -> String) -> String {
+    format!("mean {}, RMS {}, 99 % within {}, largest {}", show(d.mean), show(d.rms), show(d.p99), show(d.max))
+}
+
+/// A share in percent, without rounding to a whole that it is not.
+fn share(share: f64) -> String {
+    let percent = 100.0 * share;
+    match words::number(percent) {
+        text if text == "100" && share < 1.0 => "over 99.99 %".into(),
+        text => format!("{text} %"),
+    }
+}
+
+fn changed([a, b]: [String; 2], difference: Option<f64>) -> String {
+    match difference {
+        Some(0.0) => format!("{a} in both"),
+        Some(difference) => {
+            let way = if difference > 0.0 { "more" } else { "less" };
+            format!("{a} in A, {b} in B: {} {way}", share(difference.abs()))
+        }
+        None => format!("{a} in A, {b} in B"),
+    }
+}

@@ -1,0 +1,64 @@
+//! Normals at faces, edges and vertices by which the side of a point is told (Bærentzen and Aanæs 2005).
+
+use glam::DVec3;
+
+use super::edges::Edges;
+use super::nearest_point::Feature;
+use super::weld::welded_triangles;
+use super::{Closest, TriMesh};
+
+/// Angle-weighted pseudonormals of a mesh; vertices of equal coordinates count as one. For a closed,
+/// oriented mesh without self-intersections the side they tell is exact; for others it is the side of the
+/// surface as seen from the nearest point.
+pub struct Pseudonormals {
+    faces: Vec<DVec3>,
+    /// For each triangle the sums of the unit normals over its three edges.
+    edges: Vec<[DVec3; 3]>,
+    /// For each triangle the angle-weighted sums at its three corners.
+    corners: Vec<[DVec3; 3]>,
+}
+
+impl Pseudonormals {
+    /// The normals of `mesh`.
+    pub fn of(mesh: &TriMesh) -> Self {
+        let triangles = welded_triangles(mesh);
+        let faces: Vec<DVec3> = (0..triangles.len()).map(|t| normal(mesh.corners(t))).collect();
+        let mut at_vertices = vec![DVec3::ZERO; mesh.positions.len()];
+        for (t, vertices) in triangles.iter().enumerate() {
+            let corners = mesh.corners(t);
+            for k in 0..3 {
+                let (u, v) = (corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
+                at_vertices[vertices[k] as usize] += faces[t] * angle(u, v);
+            }
+        }
+        let mut edges = vec![[DVec3::ZERO; 3]; triangles.len()];
+        Edges::new(&triangles, mesh.positions.len()).each(|edge| {
+            let sum = edge.halves().fold(DVec3::ZERO, |sum, half| sum + faces[half as usize / 3]);
+            edge.halves().for_each(|half| edges[half as usize / 3][half as usize % 3] = sum);
+        });
+        let corners = triangles.iter().map(|t| t.map(|v| at_vertices[v as usize])).collect();
+        Self { faces, edges, corners }
+    }
+
+    /// The signed distance of `p` (model units), of which `closest` is the nearest point on the mesh that these are
+    /// the normals of: negative inside, where the normals point away.
+    pub fn signed(&self, p: DVec3, closest: &Closest) -> f64 {
+        let id = closest.id as usize;
+        let normal = match closest.feature {
+            Feature::Inside => self.faces.get(id).copied(),
+            Feature::Edge(k) => self.edges.get(id).and_then(|edges| edges.get(usize::from(k)).copied()),
+            Feature::Corner(k) => self.corners.get(id).and_then(|corners| corners.get(usize::from(k)).copied()),
+        };
+        let inside = normal.is_some_and(|normal| (p - closest.point).normalize_or_zero().dot(normal) < 0.0);
+        if inside { -closest.distance } else { closest.distance }
+    }
+}
+
+/// The unit normal, or zero for a triangle without area.
+fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a).normalize_or_zero()
+}
+
+fn angle(u: DVec3, v: DVec3) -> f64 {
+    u.cross(v).length().atan2(u.dot(v))
+}
