@@ -6,11 +6,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use indicatif::ProgressBar;
-
 use super::args::CommonArgs;
 use super::exit::{Exit, Failure};
-use super::progress_bar;
+use super::progress_bar::Meter;
 use crate::progress::{Progress, Stopped};
 
 /// How long stages have to stop by themselves before the process is ended for them (reading one
@@ -26,7 +24,7 @@ pub struct Session {
     /// Whether `-v` was given.
     pub verbose: bool,
     quiet: bool,
-    bar: ProgressBar,
+    meter: Arc<Meter>,
     unfinished: Unfinished,
 }
 
@@ -41,29 +39,28 @@ impl Session {
                 .map_err(|e| Failure::internal(format!("cannot start {threads} threads: {e}")))?;
         }
         let unfinished = Unfinished::default();
-        let bar = progress_bar::progress_bar(!common.quiet);
+        let meter = Arc::new(Meter::new(!common.quiet));
         let flag = Arc::new(AtomicBool::new(false));
-        let listening = bar.clone();
-        let mut progress =
-            Progress::none().with_flag(flag.clone()).with_listener(move |event| progress_bar::show(&listening, event));
+        let listening = meter.clone();
+        let mut progress = Progress::none().with_flag(flag.clone()).with_listener(move |event| listening.show(event));
         if let Some(deadline) = common.timeout.and_then(|timeout| start.checked_add(timeout)) {
             progress = progress.with_deadline(deadline);
             watch_deadline(deadline, unfinished.clone());
         }
         watch_signals(flag, unfinished.clone())?;
-        Ok(Self { start, progress, verbose: common.verbose, quiet: common.quiet, bar, unfinished })
+        Ok(Self { start, progress, verbose: common.verbose, quiet: common.quiet, meter, unfinished })
     }
 
     /// A line for the user, unless `-q`.
     pub fn say(&self, line: &str) {
         if !self.quiet {
-            self.bar.suspend(|| eprintln_quietly(line));
+            self.meter.above(|| eprintln_quietly(line));
         }
     }
 
     /// Takes the progress bar away.
     pub fn clear_bar(&self) {
-        self.bar.finish_and_clear();
+        self.meter.clear();
     }
 
     /// Notes that `path` exists and must go if the run ends early.

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use super::bodies::{shells, volumes};
+use super::groups::{Candidate, groups};
 use super::place::place;
 use super::star::{Fault, star_fault, triangle_fault};
 use super::{Contour, ContourVertex, NO_TRIANGLE};
@@ -119,25 +120,20 @@ impl<'a> Merging<'a> {
     fn new(raw: &'a Contour, lattice: &Lattice, planes: &(impl Fn(u32) -> Option<(DVec3, f64)> + Sync)) -> Self {
         let count = raw.mesh.positions.len();
         let (starts, around) = triangles_around(&raw.mesh);
+        let (members, candidates) = groups(&raw.vertices, planes);
         let mut merging = Self {
             raw,
             groups: Vec::new(),
-            members: members_by_voxel(&raw.vertices),
+            members,
             group_of: vec![ALONE; count],
             stands: (0..count as u32).collect(),
             at: raw.mesh.positions.clone(),
             starts,
             around,
         };
-        let mut start = 0;
-        let runs = merging.members.chunk_by(|&a, &b| merging.voxel(a) == merging.voxel(b)).map(|run| {
-            start += run.len();
-            start - run.len()..start
-        });
-        let runs: Vec<_> = runs.filter(|run| run.len() > 1).collect();
-        merging.groups = runs
+        merging.groups = candidates
             .into_par_iter()
-            .filter_map(|members| {
+            .filter_map(|Candidate { members, voxel }| {
                 let vertices = &merging.members[members.clone()];
                 let characteristic = merging.euler_characteristic(vertices);
                 let unjoined = vertices.len() == 2 && characteristic == 2; // opposite faces
@@ -146,7 +142,7 @@ impl<'a> Merging<'a> {
                 }
                 let points =
                     vertices.iter().map(|&v| (raw.mesh.positions[v as usize], raw.vertices[v as usize].triangle));
-                let (at, triangle) = place(points, merging.voxel(vertices[0]), lattice, planes);
+                let (at, triangle) = place(points, voxel, lattice, planes);
                 Some(Group { members, at, triangle, merged: characteristic == 1 })
             })
             .collect();
@@ -317,10 +313,10 @@ impl<'a> Merging<'a> {
     }
 
     /// The current mesh; with `changed` groups, only the triangles that could meet a changed one. As
-    /// no vertex leaves the cells around its voxel and the voxels of a triangle are corners of one
-    /// cell, such triangles have voxels at most 4 apart: they lie in neighbouring blocks of 4³.
+    /// no vertex is farther than 2 h from its inside voxel and the voxels of a triangle are corners of
+    /// one cell, such triangles have voxels at most 6 apart: they lie in neighbouring blocks of 8³.
     fn mesh(&self, changed: Option<&[u32]>) -> Part {
-        let block = |v: u32| self.voxel(v) >> 2;
+        let block = |v: u32| self.voxel(v) >> 3;
         let near = changed.map(|groups| {
             let blocks: FxHashSet<IVec3> = self.surroundings(groups).0.into_iter().map(block).collect();
             let steps = || (0..27).map(|k| IVec3::new(k % 3, k / 3 % 3, k / 9) - 1);
@@ -348,7 +344,7 @@ impl<'a> Merging<'a> {
         let kept = self.raw.mesh.triangles.par_iter().filter_map(|&t| self.triangle(t)).collect();
         let (positions, triangles, used) = self.compact(kept);
         let source = |&v: &u32| match self.merged_group(v) {
-            Some(id) => ContourVertex { triangle: self.groups[id as usize].triangle, voxel: self.voxel(v) },
+            Some(id) => ContourVertex { triangle: self.groups[id as usize].triangle, ..self.raw.vertices[v as usize] },
             None => self.raw.vertices[v as usize],
         };
         let merged = self.groups.iter().filter(|g| g.merged).count();
@@ -362,17 +358,6 @@ impl<'a> Merging<'a> {
             kept_apart: self.groups.len() - merged,
         }
     }
-}
-
-/// All vertices, those of one voxel next to each other and ascending.
-fn members_by_voxel(vertices: &[ContourVertex]) -> Vec<u32> {
-    let mut keyed: Vec<([i32; 3], u32)> = vertices
-        .par_iter()
-        .enumerate()
-        .map(|(v, vertex)| ([vertex.voxel.z, vertex.voxel.y, vertex.voxel.x], v as u32))
-        .collect();
-    keyed.par_sort_unstable();
-    keyed.into_iter().map(|(_, v)| v).collect()
 }
 
 /// For each vertex the triangles around it: where its list starts, and the lists.

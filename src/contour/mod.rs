@@ -17,6 +17,7 @@
 mod bodies;
 mod cells;
 mod collapse;
+mod groups;
 mod place;
 mod signs;
 mod star;
@@ -74,6 +75,8 @@ pub struct ContourVertex {
     pub triangle: u32,
     /// The voxel inside the solid to whose cube it belongs.
     pub voxel: IVec3,
+    /// The voxel at the other end of its lattice edge, outside of the solid.
+    pub outside: IVec3,
 }
 
 /// A contoured surface.

@@ -1,15 +1,17 @@
 //! Where the merged vertex of a voxel goes.
 
-use glam::{DMat3, DVec3, IVec3};
+use glam::{DVec3, IVec3};
+use nalgebra::{Matrix3, Vector3};
 
 use super::NO_TRIANGLE;
 use crate::lattice::Lattice;
 
-/// Weight of the pull towards the mean of the merged vertices, against 1 for a plane. Larger, corners
-/// are rounded (0.01: mean error of fandisk at 256 grows from 0.0015 to 0.0017 h); smaller, planes a few
-/// degrees apart send vertices along the line where they meet (0.001: on rocker-arm at 128, 53
-/// instead of 21 voxels cannot be merged, and the 1 % of smallest angles fall from 17° to 14°).
-const PULL: f64 = 0.003;
+/// Weight of the pull towards the mean of the merged vertices, against 1 for a plane.
+const PULL: f64 = 1e-7;
+
+/// Directions whose eigenvalue is below this part of the largest are left alone: two planes make an
+/// edge from 11° on.
+const CUT: f64 = 0.02;
 
 /// What a vertex that lies on no known plane adds to the pull.
 const PULL_WITHOUT_PLANE: f64 = 0.1;
@@ -44,13 +46,7 @@ pub(super) fn place(
         }
     }
     let known = &known[..count];
-    let mut matrix = DMat3::from_diagonal(DVec3::splat(pull));
-    let mut right = DVec3::ZERO;
-    for &(_, n, distance) in known {
-        matrix += DMat3::from_cols(n * n.x, n * n.y, n * n.z);
-        right += n * distance;
-    }
-    let step = (matrix.inverse() * right).clamp_length_max(REACH);
+    let step = least_squares(known.iter().map(|&(_, n, distance)| (n, distance)), pull).clamp_length_max(REACH);
     let step = if step.is_finite() { step } else { DVec3::ZERO };
     let near = lattice.to_lattice(mean) + step;
     let centre = voxel.as_dvec3();
@@ -58,6 +54,27 @@ pub(super) fn place(
     let off = |k: &(u32, DVec3, f64)| (k.1.dot(step) - k.2).abs();
     let source = known.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
     (at, source.map_or(NO_TRIANGLE, |k| k.0))
+}
+
+/// The point nearest to planes (unit normal, distance from the origin) that stays at the origin in the
+/// directions they say little of, with weight `pull` for staying there in the others.
+fn least_squares(planes: impl Iterator<Item = (DVec3, f64)>, pull: f64) -> DVec3 {
+    let mut matrix = Matrix3::zeros();
+    let mut right = Vector3::zeros();
+    for (n, distance) in planes {
+        let n = Vector3::new(n.x, n.y, n.z);
+        matrix += n * n.transpose();
+        right += n * distance;
+    }
+    let eigen = matrix.symmetric_eigen();
+    let largest = eigen.eigenvalues.max();
+    let mut step = Vector3::zeros();
+    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        if *value > CUT * largest {
+            step += vector * (vector.dot(&right) / (value + pull));
+        }
+    }
+    DVec3::new(step.x, step.y, step.z)
 }
 
 #[cfg(test)]

@@ -87,9 +87,10 @@ pub(super) fn vertices(
             interpolated(low, value(signs, distance, tile, index))
         });
         let place = if place.is_finite() { place.clamp(margin, 1.0 - margin) } else { 0.5 };
-        let voxel = if inside_low { edge.voxel } else { edge.voxel + IVec3::AXES[axis] };
+        let (low, high) = (edge.voxel, edge.voxel + IVec3::AXES[axis]);
+        let (voxel, outside) = if inside_low { (low, high) } else { (high, low) };
         let triangle = hit.map_or(NO_TRIANGLE, |c| c.triangle);
-        (rounded(lattice, edge, place), place, ContourVertex { triangle, voxel })
+        (rounded(lattice, edge, place), place, ContourVertex { triangle, voxel, outside })
     };
     let parts: Vec<Vertices> = signs
         .bricks

@@ -227,7 +227,7 @@ fn count(direction: Direction, masks: &RayMasks, counts: &mut Counts) {
         for q in 0..BRICK {
             let row = (7 * shear_other.max(0) - shear_other * t + q) as usize;
             let at = (t * stride_main + q * stride_other) as usize;
-            counts.inside[at] += eight(&masks.inside[row], from_x) >> t & ONES;
+            counts.inside[at] += (eight(&masks.inside[row], from_x) >> t) & ONES;
             counts.valid[at] += eight(&masks.valid[row], from_x);
         }
     }
