@@ -87,7 +87,7 @@ impl Model {
         let operands = Operands::new([mesh.triangles.len()]);
         let mut own = mesh.clone();
         own.positions.iter_mut().for_each(|p| *p = lattice.to_lattice(*p));
-        let tree = WindingTree::new(&own, 0..own.triangles.len());
+        let tree = WindingTree::new(&own, 0..own.triangles.len(), &Progress::none())?;
         let lattice = Lattice { origin: DVec3::ZERO, h: 1.0, dims: lattice.dims };
         Ok(Self { mesh: own, lattice, operands, tree })
     }
@@ -96,12 +96,12 @@ impl Model {
         let expression = Expression::Operand(0);
         let layers = ldis(&self.mesh, &self.lattice, 1, &Progress::none()).expect("nobody stops it");
         let spans: Vec<_> = layers.into_iter().map(|layers| spans(layers, &self.operands, &expression)).collect();
-        let winding = Winding::new(&self.mesh, &self.operands, &self.lattice);
+        let winding = Winding::new(&self.mesh, &self.operands, &self.lattice, &Progress::none());
         let rule = VoteRule::default();
         let jury = Jury { spans: &spans, operands: &self.operands, expression: &expression, rule, winding: &winding };
         let votes = vote_near_surface(&jury, &Progress::none()).expect("nobody stops it");
         let planes: Vec<Plane> = (0..self.mesh.triangles.len()).map(|t| Plane::through(self.mesh.corners(t))).collect();
-        robust(&spans, &planes, &votes, options)
+        robust(&spans, &planes, &votes, options, &Progress::none()).expect("nobody stops it")
     }
 
     fn table_2(&self, name: &str, field: &str, options: &RobustOptions) {

@@ -2,21 +2,15 @@
 
 mod common;
 
-use common::{data, shapes};
+use common::{data, shapes, stages};
 use glam::{DMat3, DVec3};
-use meshwright::lattice::Lattice;
 use meshwright::ldi::{Balance, Layers, Operands, balance, ldis};
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
 use proptest::prelude::*;
 
-fn lattice_of(mesh: &TriMesh, resolution: u32) -> Lattice {
-    let bounds = mesh.bounds().expect("triangles");
-    Lattice::around(&bounds, bounds.size().max_element() / resolution as f64)
-}
-
 fn balances(mesh: &TriMesh, resolution: u32, factor: u32) -> Vec<Balance> {
-    let layers = ldis(mesh, &lattice_of(mesh, resolution), factor, &Progress::none()).expect("not stopped");
+    let layers = ldis(mesh, &stages::lattice_of(mesh, resolution), factor, &Progress::none()).expect("not stopped");
     let operands = Operands::new([mesh.triangles.len()]);
     layers.iter().map(|layers: &Layers| balance(layers, &operands)).collect()
 }

@@ -2,18 +2,26 @@
 
 mod common;
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use common::{shapes, stages};
 use glam::{DVec3, IVec3};
 use meshwright::lattice::{BRICK, Grid, Lattice};
-use meshwright::mesh::TriMesh;
+use meshwright::ldi::Spans;
+use meshwright::mesh::{Plane, TriMesh};
 use meshwright::progress::Progress;
-use meshwright::sdf::{RobustOptions, march, robust};
-use meshwright::vote::{VoteRule, voxel_in_brick};
+use meshwright::sdf::{RobustOptions, correct, estimate, march, robust, smooth};
+use meshwright::vote::{VoteRule, Votes, vote_near_surface, voxel_in_brick};
+
+fn field(spans: &[Spans], planes: &[Plane], votes: &Grid<Votes>, options: &RobustOptions) -> Grid<f32> {
+    robust(spans, planes, votes, options, &Progress::none()).expect("not stopped")
+}
 
 fn robust_of(mesh: &TriMesh, lattice: &Lattice, options: &RobustOptions) -> Grid<f32> {
     let spans = stages::spans_of(mesh, lattice);
     let votes = stages::votes_of(mesh, lattice, VoteRule::default());
-    robust(&spans, &stages::planes_of(mesh, lattice), &votes, options)
+    field(&spans, &stages::planes_of(mesh, lattice), &votes, options)
 }
 
 /// Voxels with a neighbour of the other sign, with their values.
@@ -73,7 +81,7 @@ fn correction_does_not_change_signs_and_walls_of_one_voxel_survive() {
     let lattice = stages::lattice_of(&mesh, 64);
     let spans = stages::spans_of(&mesh, &lattice);
     let votes = stages::votes_of(&mesh, &lattice, VoteRule::default());
-    let grid = robust(&spans, &stages::planes_of(&mesh, &lattice), &votes, &RobustOptions::default());
+    let grid = field(&spans, &stages::planes_of(&mesh, &lattice), &votes, &RobustOptions::default());
     let inside = voxels(&grid).filter(|(_, d)| *d < 0.0).count();
     assert!(inside >= 64 * 64 - 200, "{inside}");
     for (v, d) in voxels(&grid) {
@@ -81,6 +89,23 @@ fn correction_does_not_change_signs_and_walls_of_one_voxel_survive() {
     }
     // The paper's smoothing wears the wall away: that is why votes are trusted.
     let paper = RobustOptions { trust_votes: false, ..RobustOptions::default() };
-    let worn = robust(&spans, &stages::planes_of(&mesh, &lattice), &votes, &paper);
+    let worn = field(&spans, &stages::planes_of(&mesh, &lattice), &votes, &paper);
     assert!(voxels(&worn).filter(|(_, d)| *d < 0.0).count() < inside);
+}
+
+#[test]
+fn a_set_flag_stops_the_vote_and_every_part_of_the_field() {
+    let stop = Progress::none().with_flag(Arc::new(AtomicBool::new(true)));
+    let mesh = shapes::torus(32, 16);
+    let lattice = stages::lattice_of(&mesh, 32);
+    let (spans, planes) = (stages::spans_of(&mesh, &lattice), stages::planes_of(&mesh, &lattice));
+    let votes = stages::votes_of(&mesh, &lattice, VoteRule::default());
+    let options = RobustOptions::default();
+    let go = Progress::none();
+    let estimates = estimate(&spans, &planes, &votes.bricks, &go).expect("not stopped");
+    let smoothed = smooth(&votes, &estimates, &options, &go).expect("not stopped");
+    assert!(estimate(&spans, &planes, &votes.bricks, &stop).is_err());
+    assert!(smooth(&votes, &estimates, &options, &stop).is_err());
+    assert!(correct(smoothed, &estimates, &options, &stop).is_err());
+    stages::with_jury(&mesh, &lattice, VoteRule::default(), |jury| assert!(vote_near_surface(jury, &stop).is_err()));
 }

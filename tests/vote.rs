@@ -21,7 +21,7 @@ fn dense(mesh: &TriMesh, lattice: &Lattice, rule: VoteRule) -> Vec<bool> {
     let mut inside = std::collections::HashMap::new();
     stages::with_jury(mesh, lattice, rule, |jury| {
         for brick in bricks {
-            for (n, votes) in jury.brick(brick).iter().enumerate() {
+            for (n, votes) in jury.brick(brick).expect("not stopped").iter().enumerate() {
                 inside.insert(brick * BRICK + voxel_in_brick(n), votes.is_inside);
             }
         }

@@ -62,7 +62,7 @@ pub fn ready(mesh: TriMesh, resolution: u32) -> Ready {
 
 impl Ready {
     pub fn votes(&self) -> Grid<Votes> {
-        let winding = Winding::new(&self.mesh, &self.operands, &self.lattice);
+        let winding = Winding::new(&self.mesh, &self.operands, &self.lattice, &Progress::none());
         let expression = Expression::Operand(0);
         let rule = VoteRule::default();
         let jury =

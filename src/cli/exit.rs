@@ -112,7 +112,7 @@ impl Failure {
                 let label = labels.get(*operand).map_or("the input", String::as_str);
                 Self::input(format!("{label}: no triangle has an area"))
             }
-            Error::NothingEnclosed { reason } => Self::input(reason.clone()),
+            Error::NothingEnclosed { reason } | Error::TooLarge { reason } => Self::input(reason.clone()),
             Error::VoxelSize { reason } => {
                 Self::new(if voxel_asked { Exit::Usage } else { Exit::Input }, reason.clone())
             }

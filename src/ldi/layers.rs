@@ -5,8 +5,10 @@ use rayon::prelude::*;
 
 use crate::lattice::Direction;
 
-/// The most triangles a soup may have.
+/// The most triangles a soup may have: their numbers share 32 bits with two marks.
 pub const MAX_TRIANGLES: usize = 1 << 30;
+/// The most crossings of all directions together: they are numbered with 32 bits.
+pub const MAX_CROSSINGS: u64 = 1 << 32;
 
 /// One crossing of a ray with a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,8 +76,8 @@ pub struct Layers {
 }
 
 impl Layers {
-    /// No crossings yet.
-    pub fn empty(direction: Direction, dims: IVec3, factor: u32) -> Self {
+    /// The rays of one direction; their crossings, offsets too, are still missing.
+    pub(super) fn empty(direction: Direction, dims: IVec3, factor: u32) -> Self {
         let (low, size) = direction.ray_window(dims);
         let f = factor as i32;
         // The rays between the voxels' own stop at the last voxel's.
@@ -166,5 +168,16 @@ impl Layers {
                 }
             }
         });
+    }
+}
+
+#[cfg(test)]
+impl Layers {
+    /// One ray along x, eight voxels long, with these crossings: depth, triangle, entering.
+    pub(super) fn of_one_ray(hits: &[(f64, u32, bool)]) -> Self {
+        let mut layers = Self::empty(crate::lattice::DIRECTIONS[0], IVec3::new(8, 1, 1), 1);
+        layers.offsets = vec![0, hits.len() as u32];
+        layers.hits = hits.iter().map(|&(depth, triangle, entering)| Hit::new(depth, triangle, entering)).collect();
+        layers
     }
 }

@@ -10,7 +10,7 @@ mod thin;
 
 pub use crossings::edge_crossing;
 pub use expression::Expression;
-pub use layers::{Hit, Layers, MAX_TRIANGLES};
+pub use layers::{Hit, Layers, MAX_CROSSINGS, MAX_TRIANGLES};
 pub use raster::{MAX_VOXELS, SNAP_BITS, rasterise, snap};
 pub(crate) use spans::balanced_alone;
 pub use spans::{Balance, Operands, Spans, TIE, balance, spans};
@@ -23,7 +23,9 @@ use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
 
 /// The LDIs of `soup` in all 13 directions, `factor` (1 or 2) rays per voxel along each axis.
-/// Triangles outside the lattice are cut to its rays.
+/// Rays that pass the lattice are left out; the later stages expect that it holds the whole soup, as
+/// [`Lattice::around`] sees to. At most [`MAX_VOXELS`] a side, [`MAX_TRIANGLES`] and
+/// [`MAX_CROSSINGS`]; the pipelines refuse what is beyond.
 pub fn ldis(soup: &TriMesh, lattice: &Lattice, factor: u32, progress: &Progress) -> Result<Vec<Layers>, Stopped> {
     let vertices = snap(&soup.positions, lattice);
     DIRECTIONS

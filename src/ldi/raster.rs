@@ -19,13 +19,19 @@ pub const SNAP_BITS: u32 = 16;
 pub const MAX_VOXELS: i32 = 1 << 12;
 /// One voxel in snapped units.
 const UNIT: i32 = 1 << SNAP_BITS;
+/// Snapped coordinates stay below this, so that sheared ones and their differences fit 32 bits.
+const FARTHEST: f64 = (1 << (SNAP_BITS + 13)) as f64 - 1.0;
 /// Triangles that one task rasterises.
 const CHUNK: usize = 8192;
+/// Crossings of one task after which it looks whether to stop.
+const CHECK_AFTER: usize = 1 << 16;
 
-/// The soup's vertices on the sub-voxel integer lattice of `lattice`.
+/// The soup's vertices on the sub-voxel integer lattice of `lattice`. Those more than twice
+/// [`MAX_VOXELS`] from its origin along an axis are moved there: a closed mesh stays closed.
 pub fn snap(positions: &[DVec3], lattice: &Lattice) -> Vec<IVec3> {
     let scale = UNIT as f64;
-    positions.par_iter().map(|&p| (lattice.to_lattice(p) * scale).round().as_ivec3()).collect()
+    let far = DVec3::splat(FARTHEST);
+    positions.par_iter().map(|&p| (lattice.to_lattice(p) * scale).round().max(-far).min(far).as_ivec3()).collect()
 }
 
 /// All crossings of the rays of `direction` with the triangles, `factor` rays per voxel along u
@@ -45,14 +51,20 @@ pub fn rasterise(
         .map(|(n, chunk)| {
             progress.check()?;
             let mut found = Vec::with_capacity(chunk.len());
+            let mut unchecked = CHECK_AFTER;
             for (k, t) in chunk.iter().enumerate() {
                 let corners = t.map(|v| direction.shear(vertices[v as usize]));
                 let triangle = (n * CHUNK + k) as u32;
                 window.cover(corners, |ray, depth, entering| found.push((ray, Hit::new(depth, triangle, entering))));
+                if found.len() >= unchecked {
+                    progress.check()?;
+                    unchecked = found.len() + CHECK_AFTER;
+                }
             }
             Ok(found)
         })
         .collect::<Result<_, Stopped>>()?;
+    progress.check()?;
     layers.fill(&found);
     Ok(layers)
 }
@@ -156,4 +168,36 @@ fn cross(a: IVec3, b: IVec3, c: IVec3) -> i64 {
     let (abx, aby) = ((b.x - a.x) as i64, (b.y - a.y) as i64);
     let (acx, acy) = ((c.x - a.x) as i64, (c.y - a.y) as i64);
     abx * acy - aby * acx
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ldi::{Operands, balance, ldis};
+    use crate::mesh::TriMesh;
+
+    #[test]
+    fn a_closed_mesh_that_reaches_far_beyond_the_lattice_still_balances() {
+        let lattice = Lattice { origin: DVec3::ZERO, h: 1.0, dims: IVec3::new(9, 5, 7) };
+        let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        for size in [20.0, 1e4, 1e9, 1e300] {
+            let corner = |n: u32| DVec3::new((n & 1) as f64, (n >> 1 & 1) as f64, (n >> 2) as f64) - 0.4;
+            let mesh = TriMesh {
+                positions: (0..8).map(|n| corner(n) * size).collect(),
+                triangles: sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect(),
+            };
+            for layers in ldis(&mesh, &lattice, 1, &Progress::none()).expect("not stopped") {
+                let balance = balance(&layers, &Operands::new([12]));
+                assert!(balance.occupied > 0 && balance.unbalanced == 0, "{balance:?} at {size}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_set_flag_stops_before_the_first_chunk_and_after_the_last() {
+        let lattice = Lattice { origin: DVec3::ZERO, h: 1.0, dims: IVec3::splat(8) };
+        let flag = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true));
+        let stopped = ldis(&TriMesh::default(), &lattice, 1, &Progress::none().with_flag(flag));
+        assert_eq!(stopped.map(|layers| layers.len()), Err(crate::progress::Stopped::Interrupted));
+    }
 }

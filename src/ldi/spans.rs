@@ -231,15 +231,6 @@ fn keep_changes(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lattice::DIRECTIONS;
-    use glam::IVec3;
-
-    fn line(hits: &[(f64, u32, bool)]) -> Layers {
-        let mut layers = Layers::empty(DIRECTIONS[0], IVec3::new(8, 1, 1), 1);
-        layers.offsets = vec![0, hits.len() as u32];
-        layers.hits = hits.iter().map(|&(d, t, e)| Hit::new(d, t, e)).collect();
-        layers
-    }
 
     fn depths(spans: &Spans) -> Vec<f64> {
         spans.layers.hits.iter().map(|hit| hit.depth).collect()
@@ -248,18 +239,21 @@ mod tests {
     #[test]
     fn union_drops_what_is_inside() {
         let one = Operands::new([4]);
-        let s =
-            spans(line(&[(1., 0, true), (2., 1, true), (3., 2, false), (4., 3, false)]), &one, &Expression::Operand(0));
+        let s = spans(
+            Layers::of_one_ray(&[(1., 0, true), (2., 1, true), (3., 2, false), (4., 3, false)]),
+            &one,
+            &Expression::Operand(0),
+        );
         assert_eq!(depths(&s), [1., 4.]);
     }
 
     #[test]
     fn facing_operands_fuse_and_a_minus_a_is_empty() {
         let two = Operands::new([2, 2]);
-        let facing = line(&[(1., 0, true), (2., 1, false), (2., 2, true), (3., 3, false)]);
+        let facing = Layers::of_one_ray(&[(1., 0, true), (2., 1, false), (2., 2, true), (3., 3, false)]);
         assert_eq!(depths(&spans(facing.clone(), &two, &Expression::union(2))), [1., 3.]);
         assert_eq!(depths(&spans(facing, &two, &Expression::intersection(2))), [0.; 0]);
-        let same = line(&[(1., 0, true), (1., 2, true), (3., 1, false), (3., 3, false)]);
+        let same = Layers::of_one_ray(&[(1., 0, true), (1., 2, true), (3., 1, false), (3., 3, false)]);
         assert_eq!(depths(&spans(same, &two, &Expression::difference(2))), [0.; 0]);
     }
 
@@ -269,7 +263,7 @@ mod tests {
         for hits in
             [&[(1., 0, true)][..], &[(1., 0, false), (2., 1, true)], &[(1., 0, true), (2., 1, true), (3., 2, false)]]
         {
-            let s = spans(line(hits), &one, &Expression::Operand(0));
+            let s = spans(Layers::of_one_ray(hits), &one, &Expression::Operand(0));
             assert!(s.is_silent(0));
             assert_eq!(s.layers.hits.len(), hits.len());
         }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::ldi::{Hit, Layers, Operands, balanced_alone};
+use crate::progress::{Progress, Stopped};
 
 /// At most this many rounds of voting: each turns over the patches that the rays vote against,
 /// and the next sees the effect. Two settle every file tried.
@@ -22,13 +23,19 @@ struct Ballot {
 /// crossing votes to keep its patch: overlapping bodies and voids in hollow ones are fine. Where
 /// they do not, but are even in number, enter, leave, enter, leave… is expected, and each crossing
 /// votes for what that says of it. An odd number of crossings has no say.
-pub fn orient_sides(layers: &mut [Layers], patch_of: &[u32], patch_count: usize, operands: &Operands) -> Vec<bool> {
+pub fn orient_sides(
+    layers: &mut [Layers],
+    patch_of: &[u32],
+    patch_count: usize,
+    operands: &Operands,
+    progress: &Progress,
+) -> Result<Vec<bool>, Stopped> {
     let mut turned = vec![false; patch_count];
     for _ in 0..ROUNDS {
         let ballots = layers
             .par_iter()
-            .map(|layers| poll(layers, patch_of, patch_count, operands))
-            .reduce(|| vec![Ballot::default(); patch_count], add);
+            .map(|layers| progress.check().map(|()| poll(layers, patch_of, patch_count, operands)))
+            .try_reduce(|| vec![Ballot::default(); patch_count], |a, b| Ok(add(a, b)))?;
         let flip: Vec<bool> = ballots.iter().map(|ballot| ballot.flip > ballot.keep).collect();
         if !flip.contains(&true) {
             break;
@@ -42,7 +49,7 @@ pub fn orient_sides(layers: &mut [Layers], patch_of: &[u32], patch_count: usize,
             }
         });
     }
-    turned
+    Ok(turned)
 }
 
 fn add(mut a: Vec<Ballot>, b: Vec<Ballot>) -> Vec<Ballot> {

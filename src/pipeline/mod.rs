@@ -112,6 +112,12 @@ pub enum Error {
         /// One sentence: why, and what to try.
         reason: String,
     },
+    /// The operands are beyond what the program can number, however much memory there is.
+    #[error("{reason}")]
+    TooLarge {
+        /// One sentence: what is too many, and what to try.
+        reason: String,
+    },
     /// More memory would be needed than allowed.
     #[error("about {} MB would be needed and {} MB are allowed{}", needed / 1_000_000, allowed / 1_000_000, fits(voxel_that_fits))]
     Memory {
@@ -153,24 +159,25 @@ pub fn boolean(
         return Err(Error::MissingOperand { operand: needed - 1, given: operands.len() });
     }
     let lattice = prepare::lattice(&prepare::bounds(operands)?, options.voxel)?;
-    plan::check_memory(operands, &lattice, options)?;
+    plan::check_limits(operands, &lattice, options)?;
     let mut stages = stages::Stages::new(progress);
 
     stages.begin("orient")?;
-    let mut soup = prepare::prepare(operands, options.orient)?;
+    let mut soup = prepare::prepare(operands, options.orient, progress)?;
     stages.begin("ldi")?;
     let mut layers = ldis(&soup.mesh, &lattice, 1, progress)?;
-    soup.turn_patches(&mut layers, options.orient);
+    soup.turn_patches(&mut layers, options.orient, progress)?;
     let hits = solid::count(&layers);
     stages.begin("spans")?;
-    let spans: Vec<Spans> = layers.into_par_iter().map(|layers| spans(layers, &soup.operands, expression)).collect();
+    let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, expression));
+    let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
     solid::refuse_scattered(&spans, hits)?;
     stages.begin("vote")?;
-    let winding = Winding::new(&soup.mesh, &soup.operands, &lattice);
+    let winding = Winding::new(&soup.mesh, &soup.operands, &lattice, progress);
     let jury = Jury { spans: &spans, operands: &soup.operands, expression, rule: options.rule, winding: &winding };
     let votes = vote_near_surface(&jury, progress)?;
     stages.begin("sdf")?;
-    let distance = sdf::robust(&spans, &soup.planes(&lattice), &votes, &options.robust);
+    let distance = sdf::robust(&spans, &soup.planes(&lattice), &votes, &options.robust, progress)?;
     stages.begin("contour")?;
     let crossing = solid::crossings(&spans, &distance);
     let mut surface = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;

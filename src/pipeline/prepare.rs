@@ -7,8 +7,9 @@ use crate::lattice::Lattice;
 use crate::ldi::{Layers, MAX_VOXELS, Operands};
 use crate::mesh::{Bounds, Plane, TriMesh};
 use crate::orient::{OrientMode, OrientReport, clean, orient_patches, orient_sides};
+use crate::progress::{Progress, Stopped};
 
-/// Coordinates beyond this cannot be meant, in any unit: 10¹⁵ of them squared still fit an `f32`.
+/// Coordinates beyond this cannot be meant, in any unit; their squares still fit an `f32`.
 const LARGEST_COORDINATE: f64 = 1e15;
 /// The voxel size must be this many times the spacing of `f32` numbers at the farthest coordinate.
 const F32_STEPS: f64 = 64.0;
@@ -26,11 +27,16 @@ pub(super) struct Soup {
 impl Soup {
     /// Lets the rays decide the side of each patch, and turns patches over in the crossings and in
     /// the soup.
-    pub(super) fn turn_patches(&mut self, layers: &mut [Layers], mode: OrientMode) {
+    pub(super) fn turn_patches(
+        &mut self,
+        layers: &mut [Layers],
+        mode: OrientMode,
+        progress: &Progress,
+    ) -> Result<(), Stopped> {
         if mode == OrientMode::Keep {
-            return;
+            return Ok(());
         }
-        let turned = orient_sides(layers, &self.patch_of, self.patch_count, &self.operands);
+        let turned = orient_sides(layers, &self.patch_of, self.patch_count, &self.operands, progress)?;
         let mut seen = vec![false; turned.len()];
         for (n, triangle) in self.mesh.triangles.iter_mut().enumerate() {
             let patch = self.patch_of[n] as usize;
@@ -41,6 +47,7 @@ impl Soup {
                 report.flipped_patches += !std::mem::replace(&mut seen[patch], true) as usize;
             }
         }
+        Ok(())
     }
 
     /// The planes of the triangles, lattice coordinates.
@@ -51,7 +58,7 @@ impl Soup {
 }
 
 /// Cleans and orients the patches of each operand.
-pub(super) fn prepare(inputs: &[TriMesh], mode: OrientMode) -> Result<Soup, Error> {
+pub(super) fn prepare(inputs: &[TriMesh], mode: OrientMode, progress: &Progress) -> Result<Soup, Error> {
     let mut soup = Soup {
         mesh: TriMesh::default(),
         operands: Operands::new([]),
@@ -61,7 +68,9 @@ pub(super) fn prepare(inputs: &[TriMesh], mode: OrientMode) -> Result<Soup, Erro
     };
     let mut counts = Vec::new();
     for (operand, input) in inputs.iter().enumerate() {
+        progress.check()?;
         let mut cleaned = clean(input);
+        progress.check()?;
         if cleaned.mesh.triangles.is_empty() {
             return Err(Error::Empty { operand });
         }

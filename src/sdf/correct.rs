@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::RobustOptions;
 use super::neighbours::Adjacency;
 use crate::lattice::Grid;
+use crate::progress::{Progress, Stopped};
 
 /// A gradient shorter than this says nothing about the distance.
 const FLAT: f32 = 0.1;
@@ -17,7 +18,12 @@ const FLAT: f32 = 0.1;
 /// points gives them a mean error of 0.0009 h on a torus at 96, and ten rounds make that 0.022 h;
 /// the paper has 0.0095 h before and 0.0029 h after. [`RobustOptions::correct_estimates`] corrects
 /// them all the same.
-pub fn correct(mut grid: Grid<f32>, estimates: &Grid<f32>, options: &RobustOptions) -> Grid<f32> {
+pub fn correct(
+    mut grid: Grid<f32>,
+    estimates: &Grid<f32>,
+    options: &RobustOptions,
+    progress: &Progress,
+) -> Result<Grid<f32>, Stopped> {
     let adjacency = Adjacency::new(&grid.bricks);
     let mut near = adjacency.transition(&grid);
     if !options.correct_estimates {
@@ -26,6 +32,7 @@ pub fn correct(mut grid: Grid<f32>, estimates: &Grid<f32>, options: &RobustOptio
         });
     }
     for _ in 0..options.correction_rounds {
+        progress.check()?;
         let changes: Vec<Vec<f32>> = near
             .par_iter()
             .enumerate()
@@ -43,7 +50,7 @@ pub fn correct(mut grid: Grid<f32>, estimates: &Grid<f32>, options: &RobustOptio
             near.iter().zip(changes).for_each(|(&n, value)| values[n as usize] = value);
         }
     }
-    grid
+    Ok(grid)
 }
 
 /// Length of the gradient from the neighbours (-x, +x, -y, …) that lie towards the surface.

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Slot, brick_of};
 use crate::ldi::Spans;
 use crate::mesh::Plane;
+use crate::progress::{Progress, Stopped};
 use crate::vote::voxel_in_brick;
 
 /// One LDI point, relative to its brick.
@@ -36,15 +37,23 @@ impl Bins {
 
 /// The estimate of each voxel, in h; NaN for voxels of cells without points. `planes` are those of
 /// the soup's triangles, in lattice coordinates.
-pub fn estimate(spans: &[Spans], planes: &[Plane], bricks: &Arc<Bricks>) -> Grid<f32> {
-    let bins = bin(spans, bricks);
-    let values = bricks.active().par_iter().map(|&brick| estimate_brick(brick, &bins, bricks, planes)).collect();
-    Grid { bricks: bricks.clone(), values, inside: f32::NAN, outside: f32::NAN }
+pub fn estimate(
+    spans: &[Spans],
+    planes: &[Plane],
+    bricks: &Arc<Bricks>,
+    progress: &Progress,
+) -> Result<Grid<f32>, Stopped> {
+    let bins = bin(spans, bricks, progress)?;
+    let checked = |&brick: &IVec3| progress.check().map(|()| estimate_brick(brick, &bins, bricks, planes));
+    let values = bricks.active().par_iter().map(checked).collect::<Result<_, Stopped>>()?;
+    Ok(Grid { bricks: bricks.clone(), values, inside: f32::NAN, outside: f32::NAN })
 }
 
 /// Sorts the points by brick; within one by direction, ray and depth.
-fn bin(spans: &[Spans], bricks: &Bricks) -> Bins {
-    let found: Vec<Vec<(u32, Point)>> = spans.par_iter().map(|spans| points(spans, bricks)).collect();
+fn bin(spans: &[Spans], bricks: &Bricks, progress: &Progress) -> Result<Bins, Stopped> {
+    let checked = |spans| progress.check().map(|()| points(spans, bricks));
+    let found: Vec<Vec<(u32, Point)>> = spans.par_iter().map(checked).collect::<Result<_, Stopped>>()?;
+    progress.check()?;
     let mut starts = vec![0u32; bricks.len() + 2];
     for &(n, _) in found.iter().flatten() {
         starts[n as usize + 2] += 1;
@@ -60,7 +69,7 @@ fn bin(spans: &[Spans], bricks: &Bricks) -> Bins {
         *at += 1;
     }
     starts.pop();
-    Bins { starts, points }
+    Ok(Bins { starts, points })
 }
 
 /// The points on the speaking rays of one direction, each with the number of its brick.

@@ -157,12 +157,30 @@ fn dilated(bricks: &Bricks, reach: i32, lattice: &Lattice) -> Bricks {
     let last = brick_of(lattice.dims - 1);
     let mut all: Vec<IVec3> = bricks.active().to_vec();
     for axis in 0..3 {
-        let mut step = IVec3::ZERO;
-        step[axis] = 1;
-        let wider = all.iter().flat_map(|&b| (-reach..=reach).map(move |k| b + step * k));
-        all = wider.filter(|b| b.min_element() >= 0 && (last - *b).min_element() >= 0).collect();
+        // Cut to the lattice before anything is made: the band may be wider than the lattice.
+        let along = |b: IVec3| b[axis].saturating_sub(reach).max(0)..=b[axis].saturating_add(reach).min(last[axis]);
+        let moved = |mut b: IVec3, k: i32| {
+            b[axis] = k;
+            b
+        };
+        all = all.iter().flat_map(|&b| along(b).map(move |k| moved(b, k))).collect();
         all.sort_unstable_by_key(|b| b.to_array());
         all.dedup();
     }
     Bricks::with_classes(all, |brick| bricks.slot(brick + IVec3::X) == Slot::Inside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn a_band_wider_than_the_lattice_takes_its_bricks_and_no_more() {
+        let lattice = Lattice { origin: DVec3::ZERO, h: 1.0, dims: IVec3::new(20, 16, 9) };
+        let bricks = Bricks::new([IVec3::new(1, 0, 1), IVec3::new(-1, 0, 0)]);
+        assert_eq!(dilated(&bricks, i32::MAX, &lattice).len(), 3 * 2 * 2);
+        assert_eq!(dilated(&bricks, 1, &lattice).len(), 3 * 2 * 2);
+        assert_eq!(dilated(&bricks, 0, &lattice).active(), [IVec3::new(1, 0, 1)]);
+    }
 }

@@ -17,13 +17,20 @@ pub use smooth::{FAR, smooth};
 use crate::lattice::Grid;
 use crate::ldi::Spans;
 use crate::mesh::Plane;
+use crate::progress::{Progress, Stopped};
 use crate::vote::Votes;
 
 /// The robust field in the active bricks of `votes`: right near the surface, ±√3 elsewhere.
 /// `planes` are those of the soup's triangles, in lattice coordinates.
-pub fn robust(spans: &[Spans], planes: &[Plane], votes: &Grid<Votes>, options: &RobustOptions) -> Grid<f32> {
-    let estimates = estimate(spans, planes, &votes.bricks);
-    correct(smooth(votes, &estimates, options), &estimates, options)
+pub fn robust(
+    spans: &[Spans],
+    planes: &[Plane],
+    votes: &Grid<Votes>,
+    options: &RobustOptions,
+    progress: &Progress,
+) -> Result<Grid<f32>, Stopped> {
+    let estimates = estimate(spans, planes, &votes.bricks, progress)?;
+    correct(smooth(votes, &estimates, options, progress)?, &estimates, options, progress)
 }
 
 /// Options of the robust field.

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::RobustOptions;
 use super::neighbours::Adjacency;
 use crate::lattice::Grid;
+use crate::progress::{Progress, Stopped};
 use crate::vote::Votes;
 
 /// The value of voxels that are known to be inside (negative) or outside only, in h: the longest
@@ -21,7 +22,12 @@ const HELD: f32 = 0.05;
 /// of and that has an estimate keeps its side, and takes the estimate at once where the signs
 /// agree. The paper's rule, under which walls of one voxel wear away, is
 /// [`RobustOptions::trust_votes`] = false.
-pub fn smooth(votes: &Grid<Votes>, estimates: &Grid<f32>, options: &RobustOptions) -> Grid<f32> {
+pub fn smooth(
+    votes: &Grid<Votes>,
+    estimates: &Grid<f32>,
+    options: &RobustOptions,
+    progress: &Progress,
+) -> Result<Grid<f32>, Stopped> {
     let adjacency = Adjacency::new(&votes.bricks);
     let work = Smoothing { votes, estimates, adjacency: &adjacency, trust_votes: options.trust_votes };
     let mut grid = Grid::filled(votes.bricks.clone(), 0.0f32, -FAR, FAR);
@@ -38,6 +44,7 @@ pub fn smooth(votes: &Grid<Votes>, estimates: &Grid<f32>, options: &RobustOption
         list.retain(|&n| !work.is_settled(brick, n as usize, grid.values[brick][n as usize]));
     });
     for _ in 0..options.smoothing_rounds {
+        progress.check()?;
         let changes: Vec<Vec<f32>> = lists
             .par_iter()
             .enumerate()
@@ -54,7 +61,7 @@ pub fn smooth(votes: &Grid<Votes>, estimates: &Grid<f32>, options: &RobustOption
         }
         work.widen(&mut lists, &grid, &flipped);
     }
-    grid
+    Ok(grid)
 }
 
 /// What the rounds of smoothing look at.

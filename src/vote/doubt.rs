@@ -75,3 +75,56 @@ fn connected(boxes: &[(IVec3, Doubt)]) -> Vec<Doubt> {
     }
     groups
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::DVec3;
+
+    use super::*;
+    use crate::lattice::{Bricks, index_in_brick};
+
+    const SURE: Votes = Votes { inside: 13, valid: 13, is_inside: true };
+    const FEW_VOTES: Votes = Votes { inside: 4, valid: 4, is_inside: true };
+    const SPLIT: Votes = Votes { inside: 6, valid: 13, is_inside: false };
+
+    fn doubts_at(bricks: impl IntoIterator<Item = IVec3>, voxels: &[(IVec3, Votes)]) -> VoteReport {
+        let lattice = Lattice { origin: DVec3::new(1.0, 0.0, 0.0), h: 0.5, dims: IVec3::splat(400) };
+        let mut grid = Grid::filled(Arc::new(Bricks::new(bricks)), SURE, SURE, SURE);
+        for &(voxel, votes) in voxels {
+            let brick = crate::lattice::brick_of(voxel);
+            let n = grid.bricks.active().iter().position(|&b| b == brick).expect("an active brick");
+            grid.values[n][index_in_brick(voxel)] = votes;
+        }
+        doubts(&grid, &lattice)
+    }
+
+    #[test]
+    fn doubtful_voxels_in_bricks_that_touch_are_one_region_and_the_largest_comes_first() {
+        let bricks = [IVec3::ZERO, IVec3::new(3, 0, 0), IVec3::new(4, 1, 1)];
+        let voxels = [
+            (IVec3::new(1, 2, 3), FEW_VOTES),
+            (IVec3::new(25, 7, 7), SPLIT),
+            (IVec3::new(32, 8, 9), FEW_VOTES),
+            (IVec3::new(2, 2, 2), Votes { inside: 3, valid: 13, is_inside: false }),
+        ];
+        let report = doubts_at(bricks, &voxels);
+        assert_eq!((report.voxels, report.doubtful), (3 * 512, 3));
+        let region = |min, max, voxels| DoubtfulRegion { min, max, voxels };
+        let expected = [region([13.5, 3.5, 3.5], [17.0, 4.0, 4.5], 2), region([1.5, 1.0, 1.5], [1.5, 1.0, 1.5], 1)];
+        assert_eq!(report.doubtful_regions, expected);
+    }
+
+    #[test]
+    fn only_the_largest_regions_are_listed_but_all_voxels_are_counted() {
+        let bricks: Vec<IVec3> = (0..15).map(|n| IVec3::new(2 * n, 0, 0)).collect();
+        let mut voxels: Vec<(IVec3, Votes)> = bricks.iter().map(|&b| (b * BRICK, SPLIT)).collect();
+        voxels.push((bricks[14] * BRICK + IVec3::X, SPLIT));
+        let report = doubts_at(bricks, &voxels);
+        assert_eq!(report.doubtful, 16);
+        assert_eq!(report.doubtful_regions.len(), REGIONS);
+        assert_eq!(report.doubtful_regions[0].voxels, 2);
+        assert_eq!(report.doubtful_regions[1].min, [1.0, 0.0, 0.0]);
+    }
+}

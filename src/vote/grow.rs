@@ -14,7 +14,8 @@ use crate::progress::{Progress, Stopped};
 
 type BrickVotes = Box<[Votes; BRICK_VOXELS]>;
 
-/// The six face neighbours of a brick, and for each the (axis, side) of the face towards it.
+/// The six face neighbours of a brick, and for each the axis across the brick's face towards it and
+/// the layer of voxels, 0 to 7, that forms that face.
 const FACES: [(IVec3, usize, usize); 6] = [
     (IVec3::NEG_X, 0, 0),
     (IVec3::X, 0, 7),
@@ -32,14 +33,13 @@ pub fn vote_near_surface(jury: &Jury<'_>, progress: &Progress) -> Result<Grid<Vo
     let mut uniform: FxHashMap<IVec3, bool> = FxHashMap::default();
     let mut wanted = bricks_with_crossings(jury.spans);
     while !wanted.is_empty() {
-        progress.check()?;
-        let votes: Vec<BrickVotes> = wanted.par_iter().map(|&brick| jury.brick(brick)).collect();
+        let votes = vote(jury, &wanted, progress)?;
         known.extend(wanted.iter().copied().zip(votes));
         for brick in &wanted {
             uniform.remove(brick);
         }
         let probes = neighbours_in_doubt(&wanted, &known, &uniform);
-        let probed: Vec<BrickVotes> = probes.par_iter().map(|&brick| jury.brick(brick)).collect();
+        let probed = vote(jury, &probes, progress)?;
         let mut next = Vec::new();
         for (brick, votes) in probes.into_iter().zip(probed) {
             if votes.iter().all(|v| v.is_inside == votes[0].is_inside) {
@@ -56,6 +56,11 @@ pub fn vote_near_surface(jury: &Jury<'_>, progress: &Progress) -> Result<Grid<Vo
         wanted = next;
     }
     Ok(assemble(known))
+}
+
+fn vote(jury: &Jury<'_>, bricks: &[IVec3], progress: &Progress) -> Result<Vec<BrickVotes>, Stopped> {
+    let checked = |&brick: &IVec3| progress.check().and_then(|()| jury.brick(brick));
+    bricks.par_iter().map(checked).collect()
 }
 
 /// The bricks of each crossing and of the voxels before and behind it, sorted.

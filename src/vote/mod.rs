@@ -8,7 +8,7 @@ mod winding;
 
 pub use doubt::doubts;
 pub use grow::vote_near_surface;
-pub use tally::{FEW, Jury, Votes, voxel_in_brick};
+pub use tally::{Jury, Votes, voxel_in_brick};
 pub use winding::{Winding, WindingTree};
 
 use serde::Serialize;
@@ -17,8 +17,8 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum VoteRule {
-    /// Ten valid votes or more that all agree; where there are none, the generalised winding number
-    /// of the soup, at least ½ inside.
+    /// Ten valid votes or more that all agree; else the generalised winding number of the
+    /// soup: inside above ½.
     #[default]
     Winding,
     /// More than half of the valid votes; below five valid votes the half-rays decide.

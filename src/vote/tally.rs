@@ -5,10 +5,11 @@ use glam::IVec3;
 use super::{VoteRule, Winding};
 use crate::lattice::{BRICK, BRICK_VOXELS, Direction, index_in_brick};
 use crate::ldi::{Expression, Hit, Operands, Spans};
+use crate::progress::Stopped;
 
 /// Below this many valid votes the half-rays decide ([`VoteRule::HalfRays`]), and a voxel is
 /// doubtful.
-pub const FEW: u8 = 5;
+pub(super) const FEW: u8 = 5;
 /// With this many valid votes that all agree, a voxel needs no winding number
 /// ([`VoteRule::Winding`]).
 const ENOUGH: u8 = 10;
@@ -77,8 +78,8 @@ struct Counts {
 }
 
 impl Jury<'_> {
-    /// The votes on the voxels of brick `brick`.
-    pub fn brick(&self, brick: IVec3) -> Box<[Votes; BRICK_VOXELS]> {
+    /// The votes on the voxels of brick `brick`. Stops only while the winding numbers are prepared.
+    pub fn brick(&self, brick: IVec3) -> Result<Box<[Votes; BRICK_VOXELS]>, Stopped> {
         let base = brick * BRICK;
         let mut masks = RayMasks { inside: [[0; WIDE]; WIDE], valid: [[0; WIDE]; WIDE] };
         let mut counts = Counts { inside: [0; 64], valid: [0; 64] };
@@ -95,9 +96,9 @@ impl Jury<'_> {
             }
         }
         if self.rule == VoteRule::Winding {
-            self.ask_winding(base, &mut votes);
+            self.ask_winding(base, &mut votes)?;
         }
-        votes
+        Ok(votes)
     }
 
     fn decide(&self, votes: Votes, voxel: IVec3) -> bool {
@@ -109,7 +110,7 @@ impl Jury<'_> {
     }
 
     /// Decides the voxels that are not clear, a block of 4³ at a time.
-    fn ask_winding(&self, base: IVec3, votes: &mut [Votes; BRICK_VOXELS]) {
+    fn ask_winding(&self, base: IVec3, votes: &mut [Votes; BRICK_VOXELS]) -> Result<(), Stopped> {
         for block in 0..8 {
             let first = IVec3::new(block & 1, block >> 1 & 1, block >> 2) * 4;
             let offsets = (0..64).map(|n| IVec3::new(n & 3, n >> 2 & 3, n >> 4));
@@ -117,9 +118,10 @@ impl Jury<'_> {
             if !unclear.is_empty() {
                 self.winding.decide(base + first, &unclear, self.expression, |k, inside| {
                     votes[index_in_brick(first + k)].is_inside = inside;
-                });
+                })?;
             }
         }
+        Ok(())
     }
 
     /// The half-rays of silent rays, behind and ahead of the voxel, say what their own counters

@@ -113,7 +113,7 @@ pub mod stages {
     pub fn with_jury<T>(mesh: &TriMesh, lattice: &Lattice, rule: VoteRule, judge: impl FnOnce(&Jury<'_>) -> T) -> T {
         let operands = Operands::new([mesh.triangles.len()]);
         let spans = spans_of(mesh, lattice);
-        let winding = Winding::new(mesh, &operands, lattice);
+        let winding = Winding::new(mesh, &operands, lattice, &Progress::none());
         let expression = Expression::Operand(0);
         judge(&Jury { spans: &spans, operands: &operands, expression: &expression, rule, winding: &winding })
     }
