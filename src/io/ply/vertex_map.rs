@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::super::error::WriteError;
 use super::super::{Format, check};
-use super::write::{header_with, is_single};
+use super::write::{header_with, is_single, write_binary_rows};
 use crate::mesh::TriMesh;
 
 /// What [`encode_vertex_map`] writes beside the mesh. The lists go by vertex; where one is too short, 0 is written.
@@ -23,36 +23,15 @@ pub struct VertexMap<'a> {
 /// # Errors
 /// See [`WriteProblem`](super::super::WriteProblem). The mesh is checked before the first byte is written.
 pub fn encode_vertex_map(mesh: &TriMesh, map: &VertexMap<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
-    const CHUNK: usize = 1 << 16;
     check(mesh, Format::Ply)?;
     let single = is_single(mesh);
     let comments: String =
         map.comments.iter().map(|text| format!("comment {}\n", text.replace(['\n', '\r'], " "))).collect();
     let properties = "property float quality\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
     out.write_all(header_with(mesh, "binary_little_endian", single, &comments, properties).as_bytes())?;
-    let mut chunk = Vec::with_capacity(CHUNK + 64);
-    for (vertex, p) in mesh.positions.iter().enumerate() {
-        for x in p.to_array() {
-            if single {
-                chunk.extend_from_slice(&(x as f32).to_le_bytes());
-            } else {
-                chunk.extend_from_slice(&x.to_le_bytes());
-            }
-        }
-        chunk.extend_from_slice(&map.quality.get(vertex).copied().unwrap_or(0.0).to_le_bytes());
-        chunk.extend_from_slice(&map.colours.get(vertex).copied().unwrap_or_default());
-        if chunk.len() >= CHUNK {
-            out.write_all(&chunk)?;
-            chunk.clear();
-        }
-    }
-    for t in &mesh.triangles {
-        chunk.push(3);
-        t.iter().for_each(|v| chunk.extend_from_slice(&v.to_le_bytes()));
-        if chunk.len() >= CHUNK {
-            out.write_all(&chunk)?;
-            chunk.clear();
-        }
-    }
-    Ok(out.write_all(&chunk)?)
+    let extra = |vertex: usize, row: &mut Vec<u8>| {
+        row.extend_from_slice(&map.quality.get(vertex).copied().unwrap_or(0.0).to_le_bytes());
+        row.extend_from_slice(&map.colours.get(vertex).copied().unwrap_or_default());
+    };
+    write_binary_rows(mesh, single, extra, out)
 }

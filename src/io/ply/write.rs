@@ -28,11 +28,22 @@ pub(super) fn is_single(mesh: &TriMesh) -> bool {
 
 /// Writes binary little-endian PLY.
 pub(in crate::io) fn write_binary(mesh: &TriMesh, out: &mut dyn Write) -> Result<(), WriteError> {
-    const CHUNK: usize = 1 << 16;
     let single = is_single(mesh);
     out.write_all(header(mesh, "binary_little_endian", single).as_bytes())?;
-    let mut chunk = Vec::with_capacity(CHUNK + 32);
-    for p in &mesh.positions {
+    write_binary_rows(mesh, single, |_, _| (), out)
+}
+
+/// Writes what follows the header of binary little-endian PLY; `extra` appends the further
+/// properties of a vertex, given by its number, to its row.
+pub(super) fn write_binary_rows(
+    mesh: &TriMesh,
+    single: bool,
+    extra: impl Fn(usize, &mut Vec<u8>),
+    out: &mut dyn Write,
+) -> Result<(), WriteError> {
+    const CHUNK: usize = 1 << 16;
+    let mut chunk = Vec::with_capacity(CHUNK + 64);
+    for (vertex, p) in mesh.positions.iter().enumerate() {
         for x in p.to_array() {
             if single {
                 chunk.extend_from_slice(&(x as f32).to_le_bytes());
@@ -40,6 +51,7 @@ pub(in crate::io) fn write_binary(mesh: &TriMesh, out: &mut dyn Write) -> Result
                 chunk.extend_from_slice(&x.to_le_bytes());
             }
         }
+        extra(vertex, &mut chunk);
         if chunk.len() >= CHUNK {
             out.write_all(&chunk)?;
             chunk.clear();
