@@ -19,6 +19,7 @@
 pub mod cli;
 pub mod compare;
 pub mod contour;
+pub mod fit;
 pub mod io;
 pub mod lattice;
 pub mod ldi;

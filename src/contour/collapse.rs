@@ -29,11 +29,29 @@ const MOST_SEARCHES: usize = 12;
 /// Searches after which the neighbours of intersecting triangles are split too.
 const PATIENT_SEARCHES: usize = 3;
 
+/// Which voxels' vertices are merged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Merge {
+    /// All, as in the paper.
+    All,
+    /// Those whose source triangles are nearly one plane, so that nothing is lost.
+    Flat {
+        /// How far the merged vertex may lie beside the planes, h.
+        within: f64,
+    },
+}
+
 /// What [`collapse_same_voxel`] made of a contour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Collapsed {
     /// The coarser contour. The voxel of a vertex stays the one it belongs to.
     pub contour: Contour,
+    /// The raw vertices that became vertex v: `members[starts[v]..starts[v + 1]]` in `raw`.
+    pub starts: Vec<u32>,
+    /// See `starts`.
+    pub members: Vec<u32>,
+    /// The vertices of the raw contour.
+    pub raw: Vec<ContourVertex>,
     /// Voxels whose vertices became one.
     pub merged: usize,
     /// Voxels whose vertices stayed apart, because merging them would have made the mesh
@@ -51,9 +69,11 @@ pub fn collapse_same_voxel(
     contour: Contour,
     lattice: &Lattice,
     planes: &(impl Fn(u32) -> Option<(DVec3, f64)> + Sync),
+    merge: Merge,
     progress: &Progress,
 ) -> Result<Collapsed, Stopped> {
-    let (shells, mut merging) = rayon::join(|| shells(&contour.mesh), || Merging::new(&contour, lattice, planes));
+    let (shells, mut merging) =
+        rayon::join(|| shells(&contour.mesh), || Merging::new(&contour, lattice, planes, merge));
     progress.check()?;
     merging.settle(None, progress)?;
     let volumes = merging.volumes_before(&shells);
@@ -117,7 +137,12 @@ pub(super) struct Merging<'a> {
 }
 
 impl<'a> Merging<'a> {
-    fn new(raw: &'a Contour, lattice: &Lattice, planes: &(impl Fn(u32) -> Option<(DVec3, f64)> + Sync)) -> Self {
+    fn new(
+        raw: &'a Contour,
+        lattice: &Lattice,
+        planes: &(impl Fn(u32) -> Option<(DVec3, f64)> + Sync),
+        merge: Merge,
+    ) -> Self {
         let count = raw.mesh.positions.len();
         let (starts, around) = triangles_around(&raw.mesh);
         let (members, candidates) = groups(&raw.vertices, planes);
@@ -143,6 +168,16 @@ impl<'a> Merging<'a> {
                 let points =
                     vertices.iter().map(|&v| (raw.mesh.positions[v as usize], raw.vertices[v as usize].triangle));
                 let (at, triangle) = place(points, voxel, lattice, planes);
+                if let Merge::Flat { within } = merge {
+                    let triangles = vertices.iter().map(|&v| raw.vertices[v as usize].triangle);
+                    let known = triangles.map(|t| (t != NO_TRIANGLE).then(|| planes(t)).flatten());
+                    let near = |plane: Option<(DVec3, f64)>| {
+                        plane.is_none_or(|(normal, offset)| (normal.dot(at) - offset).abs() <= within * lattice.h)
+                    };
+                    if !known.clone().all(near) || known.flatten().any(|(n, _)| !flat(n, planes, triangle)) {
+                        return None;
+                    }
+                }
                 Some(Group { members, at, triangle, merged: characteristic == 1 })
             })
             .collect();
@@ -343,6 +378,12 @@ impl<'a> Merging<'a> {
     fn finish(self) -> Collapsed {
         let kept = self.raw.mesh.triangles.par_iter().filter_map(|&t| self.triangle(t)).collect();
         let (positions, triangles, used) = self.compact(kept);
+        let mut starts = vec![0];
+        let mut members = Vec::with_capacity(self.stands.len());
+        for v in &used {
+            members.extend_from_slice(self.crowd(v));
+            starts.push(members.len() as u32);
+        }
         let source = |&v: &u32| match self.merged_group(v) {
             Some(id) => ContourVertex { triangle: self.groups[id as usize].triangle, ..self.raw.vertices[v as usize] },
             None => self.raw.vertices[v as usize],
@@ -354,10 +395,18 @@ impl<'a> Merging<'a> {
                 mesh: TriMesh { positions, triangles },
                 folded_loops: self.raw.folded_loops,
             },
+            starts,
+            members,
+            raw: self.raw.vertices.clone(),
             merged,
             kept_apart: self.groups.len() - merged,
         }
     }
+}
+
+/// Whether a normal agrees with that of `triangle` (20°), either way round.
+fn flat(normal: DVec3, planes: &impl Fn(u32) -> Option<(DVec3, f64)>, triangle: u32) -> bool {
+    planes(triangle).is_none_or(|(other, _)| normal.dot(other).abs() > 0.94)
 }
 
 /// For each vertex the triangles around it: where its list starts, and the lists.

@@ -24,7 +24,7 @@ mod star;
 mod table;
 mod vertices;
 
-pub use collapse::{Collapsed, collapse_same_voxel};
+pub use collapse::{Collapsed, Merge, collapse_same_voxel};
 
 use glam::IVec3;
 use rayon::prelude::*;

@@ -11,7 +11,7 @@ pub use report::{LdiReport, Report, StageTime, ThinReport};
 
 use rayon::prelude::*;
 
-use crate::contour::{ContourOptions, contour};
+use crate::contour::{Contour, ContourOptions, contour};
 use crate::lattice::Lattice;
 use crate::ldi::{Expression, Spans, ldis, spans};
 use crate::mesh::TriMesh;
@@ -186,7 +186,25 @@ pub fn boolean(
     }
     if options.collapse {
         stages.begin("collapse")?;
-        surface = solid::collapse(surface, &soup, &lattice, progress)?;
+        let merge = match std::env::var("MERGE").as_deref() {
+            Ok("all") => crate::contour::Merge::All,
+            Ok("none") => crate::contour::Merge::Flat { within: -1.0 },
+            _ => crate::contour::Merge::Flat { within: 0.01 },
+        };
+        let collapsed = solid::collapse(surface, &soup, &lattice, merge, progress)?;
+        if std::env::var("NOFIT").is_err() {
+            stages.begin("fit")?;
+            let facets = crate::fit::Facets::new(&soup.mesh, []);
+            let sides = solid::sides(&collapsed, &facets);
+            let home = crate::fit::Surface { mesh: collapsed.contour.mesh, sides };
+            let (sharp, _) = crate::fit::sharpen(&home, &facets, lattice.h, &Default::default(), progress)?;
+            stages.begin("simplify")?;
+            let tol: f64 = std::env::var("TOL").ok().and_then(|t| t.parse().ok()).unwrap_or(0.005);
+            let sharp = if tol > 0.0 { crate::fit::simplified(sharp, &facets, lattice.h, tol, progress)? } else { sharp };
+            surface = Contour { mesh: sharp.mesh, ..Contour::default() };
+        } else {
+            surface = collapsed.contour;
+        }
     }
 
     let mut report = solid::report(&lattice, &spans, hits, &votes);

@@ -1,10 +1,12 @@
 //! The small pieces between the stages of a boolean: look-ups, counts, and words.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::prepare::Soup;
 use super::{Error, LdiReport, Report, ThinReport};
-use crate::contour::{Contour, Crossing, Edge, collapse_same_voxel};
+use crate::contour::{Collapsed, Contour, Crossing, ContourVertex, Edge, Merge, NO_TRIANGLE, collapse_same_voxel};
+use crate::fit::{Facets, Side, Sides};
 use crate::lattice::{Grid, Lattice};
 use crate::ldi::{Layers, Lengths, Spans, THIN, edge_crossing, lengths};
 use crate::mesh::Plane;
@@ -153,11 +155,28 @@ pub(super) fn collapse(
     contour: Contour,
     soup: &Soup,
     lattice: &Lattice,
+    merge: Merge,
     progress: &Progress,
-) -> Result<Contour, Stopped> {
+) -> Result<Collapsed, Stopped> {
     let plane = |triangle: u32| {
         let plane = Plane::through(soup.mesh.corners(triangle as usize));
         (plane.normal != DVec3::ZERO).then_some((plane.normal, plane.offset))
     };
-    Ok(collapse_same_voxel(contour, lattice, &plane, progress)?.contour)
+    collapse_same_voxel(contour, lattice, &plane, merge, progress)
+}
+
+/// The facets that the vertices of a merged contour lie on.
+pub(super) fn sides(collapsed: &Collapsed, facets: &Facets<'_>) -> Vec<Sides> {
+    let side = |vertex: &ContourVertex| {
+        if vertex.triangle == NO_TRIANGLE {
+            return Side::NONE;
+        }
+        let normal = facets.plane(Side::new(vertex.triangle, false)).normal;
+        Side::new(vertex.triangle, normal.dot((vertex.outside - vertex.voxel).as_dvec3()) < 0.0)
+    };
+    let members = |v: usize| &collapsed.members[collapsed.starts[v] as usize..collapsed.starts[v + 1] as usize];
+    (0..collapsed.contour.mesh.positions.len())
+        .into_par_iter()
+        .map(|v| Sides::of(members(v).iter().map(|&m| side(&collapsed.raw[m as usize])).filter(|s| s.is_some())))
+        .collect()
 }

@@ -1,0 +1,122 @@
+//! Where the surface bends between two vertices: the point of the crease that an edge of the mesh
+//! cuts off.
+
+use glam::DVec3;
+use nalgebra::{Matrix3, Vector3};
+
+use super::facets::{Facets, Side, Sides};
+use crate::mesh::Plane;
+
+/// Planes that turn by less (cosine, 3°) are no crease.
+const FLAT: f64 = 0.9986;
+
+/// Planes that turn by less (cosine, 20°) belong to one smooth piece.
+pub(super) const SMOOTH: f64 = 0.94;
+
+/// How far a point may lie beyond the ends of its facets, h, and still count as being on the source.
+const BEYOND: f64 = 0.05;
+
+/// Rounds of walking to the facets under the point and taking their planes.
+const ROUNDS: usize = 4;
+
+/// Directions whose eigenvalue is below this part of the largest are left alone.
+const CUT: f64 = 1e-4;
+
+/// A vertex: where it is and the facets it lies on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub at: DVec3,
+    pub sides: Sides,
+}
+
+/// A point of a crease.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Crease {
+    /// The point and the facets that meet there.
+    pub place: Place,
+    /// Its distance from the edge that cuts it off, model units.
+    pub sag: f64,
+    /// Whether it lies on all its facets, and not only on their planes.
+    pub on_source: bool,
+    /// Cosine of the angle between the facets.
+    pub cosine: f64,
+}
+
+/// The crease that the edge between `x` and `y` cuts off; `None` when their facets are one smooth
+/// piece, or nothing is known. Of several creases it is the one over which the way from `x` to `y` is the
+/// shortest, and one that lies on its facets before one that does not. `h` in model units.
+pub(super) fn crease(facets: &Facets<'_>, h: f64, x: &Place, y: &Place) -> Option<Crease> {
+    let normal = |side: Side| facets.plane(side).normal;
+    let pairs = || x.sides.iter().flat_map(|p| y.sides.iter().map(move |q| (p, q)));
+    let cosine = pairs().map(|(p, q)| normal(p).dot(normal(q))).max_by(f64::total_cmp)?;
+    if cosine > FLAT {
+        return None;
+    }
+    let found = pairs().filter_map(|(p, q)| between(facets, h, (x.at, p), (y.at, q)));
+    let way = |c: &Crease| c.place.at.distance(x.at) + c.place.at.distance(y.at);
+    let best = found.min_by(|a, b| b.on_source.cmp(&a.on_source).then(way(a).total_cmp(&way(b))))?;
+    Some(Crease { cosine, ..best })
+}
+
+/// The crease between the smooth pieces of two facets.
+fn between(facets: &Facets<'_>, h: f64, (x, p): (DVec3, Side), (y, q): (DVec3, Side)) -> Option<Crease> {
+    let (mut p, mut q) = (p, q);
+    let (mut at, mut beyond) = (DVec3::ZERO, f64::INFINITY);
+    for _ in 0..ROUNDS {
+        let (on, other) = (facets.plane(p), facets.plane(q));
+        at = match crossing(&on, &other, x, y) {
+            Some(at) => at,
+            // Both ways lead to one facet between those of the two.
+            None if p == q => {
+                let middle = (x + y) / 2.0;
+                middle - on.normal * on.distance(middle)
+            }
+            None => return None,
+        };
+        let (on_p, on_q) = (facets.walk(p, at), facets.walk(q, at));
+        beyond = on_p.1.max(on_q.1);
+        if (on_p.0, on_q.0) == (p, q) {
+            break;
+        }
+        (p, q) = (on_p.0, on_q.0);
+    }
+    let cosine = facets.plane(p).normal.dot(facets.plane(q).normal);
+    let edge = y - x;
+    let along = ((at - x).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
+    let sag = at.distance(x + edge * along);
+    let place = Place { at, sides: Sides::of([p, q]) };
+    at.is_finite().then_some(Crease { place, sag, on_source: beyond <= BEYOND * h, cosine })
+}
+
+/// Where the straight way over two planes from `x`, on `p`, to `y`, on `q`, crosses their line.
+fn crossing(p: &Plane, q: &Plane, x: DVec3, y: DVec3) -> Option<DVec3> {
+    let onto = |from: DVec3| {
+        let cosine = p.normal.dot(q.normal);
+        let sine = 1.0 - cosine * cosine;
+        let (a, b) = (p.distance(from), q.distance(from));
+        (sine > 1e-9).then(|| from - p.normal * ((a - cosine * b) / sine) - q.normal * ((b - cosine * a) / sine))
+    };
+    let (x_on, y_on) = (onto(x)?, onto(y)?);
+    let (a, b) = (x.distance(x_on), y.distance(y_on));
+    Some(if a + b > 0.0 { (x_on * b + y_on * a) / (a + b) } else { x_on })
+}
+
+/// The point nearest to `from` that is on all planes, in the least squares' sense.
+pub(super) fn nearest(planes: impl Iterator<Item = Plane>, from: DVec3) -> Option<DVec3> {
+    let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for plane in planes {
+        let n = Vector3::new(plane.normal.x, plane.normal.y, plane.normal.z);
+        matrix += n * n.transpose();
+        right -= n * plane.distance(from);
+    }
+    let eigen = matrix.symmetric_eigen();
+    let largest = eigen.eigenvalues.max();
+    let mut step = Vector3::zeros();
+    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+        if *value > CUT * largest {
+            step += vector * (vector.dot(&right) / value);
+        }
+    }
+    let at = from + DVec3::new(step.x, step.y, step.z);
+    at.is_finite().then_some(at)
+}

@@ -1,0 +1,167 @@
+//! The source triangles as planes with extents: what the surface is fitted to.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::mesh::edges::Edges;
+use crate::mesh::{Plane, TriMesh};
+
+/// No facet.
+const NONE: u32 = u32::MAX;
+
+/// Facets that turn by more than this are different sides of a crease for a walk (cosine, 20°).
+const SMOOTH: f64 = 0.94;
+
+/// Most facets that a walk crosses.
+const LONGEST_WALK: usize = 24;
+
+/// A facet seen from one of its sides: the one that looks out of the solid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Side(u32);
+
+impl Side {
+    /// No facet at all.
+    pub const NONE: Self = Self(NONE);
+
+    /// Facet `facet`, seen against its own normal when `reversed`.
+    pub fn new(facet: u32, reversed: bool) -> Self {
+        Self(facet << 1 | u32::from(reversed))
+    }
+
+    /// The number of the facet.
+    pub fn facet(self) -> u32 {
+        self.0 >> 1
+    }
+
+    /// Whether the solid lies on the side of the facet's own normal.
+    pub fn reversed(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    /// Whether there is a facet.
+    pub fn is_some(self) -> bool {
+        self != Self::NONE
+    }
+}
+
+/// Most facets that a vertex remembers to lie on.
+pub(super) const MOST: usize = 4;
+
+/// The facets that a vertex lies on: one on a face, several on creases and corners, none where
+/// nothing is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sides([Side; MOST]);
+
+impl Default for Sides {
+    fn default() -> Self {
+        Self([Side::NONE; MOST])
+    }
+}
+
+impl Sides {
+    /// The given sides, each once, at most four.
+    pub fn of(sides: impl IntoIterator<Item = Side>) -> Self {
+        let mut all = Self::default();
+        sides.into_iter().for_each(|side| all.add(side));
+        all
+    }
+
+    /// Adds a side unless it is there or four are.
+    pub fn add(&mut self, side: Side) {
+        if let Some(free) = self.0.iter_mut().find(|s| !s.is_some() || **s == side) {
+            *free = side;
+        }
+    }
+
+    /// The sides.
+    pub fn iter(&self) -> impl Iterator<Item = Side> + Clone + '_ {
+        self.0.iter().copied().take_while(|s| s.is_some())
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        !self.0[0].is_some()
+    }
+}
+
+/// Planes with extents. The first ones are the triangles of the source mesh, the others planes without
+/// an end.
+pub struct Facets<'a> {
+    mesh: &'a TriMesh,
+    planes: Vec<Plane>,
+    /// The triangle across each edge (corner k to the next) and whether it is turned the other
+    /// way, or [`NONE`].
+    across: Vec<[(u32, bool); 3]>,
+}
+
+impl<'a> Facets<'a> {
+    /// The triangles of `mesh`, and after them `lids`: planes, model units, of surface that has no
+    /// source.
+    pub fn new(mesh: &'a TriMesh, lids: impl IntoIterator<Item = Plane>) -> Self {
+        let count = mesh.triangles.len();
+        let mut planes: Vec<Plane> =
+            (0..count).into_par_iter().map(|t| Plane::through(mesh.corners(t))).collect();
+        planes.extend(lids);
+        let mut across = vec![[(NONE, false); 3]; count];
+        let edges = Edges::new(&mesh.triangles, mesh.positions.len());
+        edges.each(|edge| {
+            let mut halves = edge.halves();
+            let (2, Some(a), Some(b)) = (edge.count(), halves.next(), halves.next()) else { return };
+            let start = |h: u32| mesh.triangles[h as usize / 3][h as usize % 3];
+            let turned = start(a) == start(b);
+            across[a as usize / 3][a as usize % 3] = (b / 3, turned);
+            across[b as usize / 3][b as usize % 3] = (a / 3, turned);
+        });
+        Self { mesh, planes, across }
+    }
+
+    /// The number of source triangles: facets from here on have no extent.
+    pub fn triangles(&self) -> usize {
+        self.across.len()
+    }
+
+    /// The plane of a side, its normal looking out of the solid. Its normal is zero where the
+    /// triangle has no area.
+    #[inline]
+    pub fn plane(&self, side: Side) -> Plane {
+        let plane = self.planes[side.facet() as usize];
+        if side.reversed() { Plane { normal: -plane.normal, offset: -plane.offset } } else { plane }
+    }
+
+    /// Walks over the source from `side` towards `p` without leaving the smooth piece: the facet
+    /// over which `p` lies, or the last one before a crease or border, and how far beyond its end
+    /// `p` then lies, model units.
+    pub(super) fn walk(&self, side: Side, p: DVec3) -> (Side, f64) {
+        let mut at = side;
+        for _ in 0..LONGEST_WALK {
+            let Some((edge, beyond)) = self.exit(at, p) else { return (at, 0.0) };
+            let (next, turned) = self.across[at.facet() as usize][edge];
+            if next == NONE {
+                return (at, beyond);
+            }
+            let next = Side::new(next, at.reversed() != turned);
+            if self.plane(next).normal.dot(self.plane(at).normal) < SMOOTH {
+                return (at, beyond);
+            }
+            at = next;
+        }
+        (at, f64::INFINITY)
+    }
+
+    /// The edge of a side's triangle that `p` lies farthest beyond, seen along the normal, and by how much; `None`
+    /// over the triangle and for facets without extent.
+    fn exit(&self, side: Side, p: DVec3) -> Option<(usize, f64)> {
+        if side.facet() as usize >= self.across.len() {
+            return None;
+        }
+        let corners = self.mesh.corners(side.facet() as usize);
+        let normal = self.planes[side.facet() as usize].normal;
+        let beyond = |k: usize| {
+            let (a, b) = (corners[k], corners[(k + 1) % 3]);
+            (b - a).cross(normal).normalize_or_zero().dot(p - a)
+        };
+        let far = [beyond(0), beyond(1), beyond(2)];
+        let k = (0..3).max_by(|&i, &j| far[i].total_cmp(&far[j]))?;
+        (far[k] > 0.0).then_some((k, far[k]))
+    }
+}

@@ -1,0 +1,184 @@
+//! What is moved and where is cut, and how to take it back.
+
+use rayon::prelude::*;
+use rustc_hash::FxHashSet;
+
+use super::crease::{Crease, SMOOTH, crease};
+use super::facets::Facets;
+use super::{Around, FitOptions, FitReport, Surface, rounded, snap};
+
+/// The state of a fit.
+pub(super) struct Fitting<'a> {
+    home: &'a Surface,
+    facets: &'a Facets<'a>,
+    h: f64,
+    options: FitOptions,
+    around: Around,
+    /// Edges between different facets.
+    edges: Vec<[u32; 2]>,
+    /// The surface with vertices moved.
+    pub surface: Surface,
+    /// Whether a vertex has been moved.
+    moved: Vec<bool>,
+    /// Where edges are cut, sorted.
+    pub points: Vec<([u32; 2], Crease)>,
+    /// Edges that must not be cut.
+    uncut: FxHashSet<[u32; 2]>,
+    /// Triangles that get no vertex inside.
+    pub plain: FxHashSet<u32>,
+    /// Triangles of the home surface that are other than when they were last judged; `None` for all that
+    /// differ from home.
+    dirty: Option<FxHashSet<u32>>,
+    snapped: usize,
+    given_up: usize,
+}
+
+impl<'a> Fitting<'a> {
+    /// Moves vertices and finds where to cut.
+    pub(super) fn new(home: &'a Surface, facets: &'a Facets<'a>, h: f64, options: &FitOptions) -> Self {
+        let around = Around::new(&home.mesh);
+        let mut surface = home.clone();
+        let mut moved = vec![false; home.mesh.positions.len()];
+        flatten(&mut surface, facets, h).into_iter().for_each(|v| moved[v as usize] = true);
+        let edges = straddling(&surface, facets);
+        let snapped = snap::snap(&mut surface, facets, h, &edges, &around);
+        snapped.iter().for_each(|&v| moved[v as usize] = true);
+        let points = creases(&surface, facets, h, options, edges.par_iter().copied());
+        Self {
+            home,
+            facets,
+            h,
+            options: *options,
+            around,
+            edges,
+            surface,
+            moved,
+            points,
+            uncut: FxHashSet::default(),
+            plain: FxHashSet::default(),
+            dirty: None,
+            snapped: snapped.len(),
+            given_up: 0,
+        }
+    }
+
+    /// The triangles, given what they were at home, that must be judged.
+    pub(super) fn changed(&self, origin: &[u32]) -> Vec<u32> {
+        let all = 0..origin.len() as u32;
+        match &self.dirty {
+            Some(dirty) => all.filter(|&t| dirty.contains(&origin[t as usize])).collect(),
+            None => {
+                let home = &self.home.mesh.triangles;
+                let mut parts = vec![0u8; home.len()];
+                origin.iter().for_each(|&t| parts[t as usize] += 1);
+                let moved = |id: u32| home[id as usize].iter().any(|&v| self.moved[v as usize]);
+                let cut_or_moved = |t: u32| parts[origin[t as usize] as usize] > 1 || moved(origin[t as usize]);
+                all.into_par_iter().filter(|&t| cut_or_moved(t)).collect()
+            }
+        }
+    }
+
+    /// Takes back, step by step, what was done at the home triangles `bad`: first vertices
+    /// inside, then cuts, then moves, then all of this around them.
+    pub(super) fn undo(&mut self, bad: &[u32], centred: &[u32]) {
+        let is_centred: FxHashSet<u32> = centred.iter().copied().collect();
+        let is_cut: FxHashSet<[u32; 2]> = self.points.iter().map(|p| p.0).collect();
+        let mut dirty: FxHashSet<u32> = bad.iter().copied().collect();
+        let mut back: FxHashSet<u32> = FxHashSet::default();
+        for &t in bad {
+            let ids = self.home.mesh.triangles[t as usize];
+            self.given_up += 1;
+            if is_centred.contains(&t) && self.plain.insert(t) {
+                continue;
+            }
+            let cut: Vec<[u32; 2]> = sides_of(ids).into_iter().filter(|e| is_cut.contains(e)).collect();
+            if !cut.is_empty() {
+                self.uncut.extend(&cut);
+                cut.iter().for_each(|e| dirty.extend(self.around.of(e[0]).iter().filter(|t| self.around.of(e[1]).contains(t))));
+            } else if ids.iter().any(|&v| self.moved[v as usize]) {
+                back.extend(ids);
+            } else {
+                for &near in ids.iter().flat_map(|&v| self.around.of(v)) {
+                    let ids = self.home.mesh.triangles[near as usize];
+                    self.plain.insert(near);
+                    self.uncut.extend(sides_of(ids));
+                    back.extend(ids);
+                }
+            }
+        }
+        for &v in &back {
+            self.surface.mesh.positions[v as usize] = self.home.at(v);
+            self.surface.sides[v as usize] = self.home.sides[v as usize];
+            self.moved[v as usize] = false;
+            dirty.extend(self.around.of(v));
+        }
+        let touched = |e: &[u32; 2]| back.contains(&e[0]) || back.contains(&e[1]);
+        self.points.retain(|(e, _)| !touched(e) && !self.uncut.contains(e));
+        let again = self.edges.par_iter().copied().filter(|e| touched(e) && !self.uncut.contains(e));
+        let new = creases(&self.surface, self.facets, self.h, &self.options, again);
+        self.points.extend(new);
+        self.points.par_sort_unstable_by_key(|p| p.0);
+        self.dirty = Some(dirty);
+    }
+
+    /// What was done.
+    pub(super) fn report(&self) -> FitReport {
+        FitReport { moved: self.snapped, inserted: self.points.len(), given_up: self.given_up }
+    }
+}
+
+/// The edges of a triangle, smaller vertex first.
+fn sides_of(t: [u32; 3]) -> [[u32; 2]; 3] {
+    [0, 1, 2].map(|k| [t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3])])
+}
+
+/// Moves vertices that lie beside the plane of their one facet onto it.
+fn flatten(surface: &mut Surface, facets: &Facets<'_>, h: f64) -> Vec<u32> {
+    let (sides, positions) = (&surface.sides, &mut surface.mesh.positions);
+    let moved = positions.par_iter_mut().zip(sides).enumerate().filter_map(|(v, (at, sides))| {
+        let mut own = sides.iter();
+        let (Some(side), None) = (own.next(), own.next()) else { return None };
+        let plane = facets.plane(side);
+        let distance = plane.distance(*at);
+        (distance.abs() > (1e-6 * h).max(at.abs().max_element() * 2.4e-7) && distance.abs() < 0.05 * h).then(|| {
+            *at = rounded(*at - plane.normal * distance);
+            v as u32
+        })
+    });
+    moved.collect()
+}
+
+/// The edges between different facets.
+fn straddling(surface: &Surface, facets: &Facets<'_>) -> Vec<[u32; 2]> {
+    let differ = |a: u32, b: u32| {
+        let (x, y) = (surface.sides[a as usize], surface.sides[b as usize]);
+        !x.is_empty() && !y.is_empty() && x.iter().all(|p| {
+            let p = facets.plane(p).normal;
+            y.iter().all(|q| p.dot(facets.plane(q).normal) < 0.9986)
+        })
+    };
+    let edges = surface.mesh.triangles.par_iter().flat_map_iter(|&t| {
+        [0, 1, 2].into_iter().map(move |k| [t[k], t[(k + 1) % 3]]).filter(|[a, b]| a < b && differ(*a, *b))
+    });
+    edges.collect()
+}
+
+/// The points at which edges are to be cut.
+fn creases(
+    surface: &Surface,
+    facets: &Facets<'_>,
+    h: f64,
+    options: &FitOptions,
+    edges: impl ParallelIterator<Item = [u32; 2]>,
+) -> Vec<([u32; 2], Crease)> {
+    let found = edges.filter_map(|edge| {
+        let found = crease(facets, h, &surface.place(edge[0]), &surface.place(edge[1]))?;
+        let wanted = found.sag > options.sag * h
+            && (found.on_source || (found.sag < h && found.cosine < SMOOTH));
+        wanted.then_some((edge, found))
+    });
+    let mut found: Vec<_> = found.collect();
+    found.par_sort_unstable_by_key(|p| p.0);
+    found
+}
+

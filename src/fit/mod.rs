@@ -1,0 +1,188 @@
+//! Sharp edges back: the contour's surface is fitted to the facets of its source.
+//!
+//! The vertices of the contour lie on source triangles already; what a lattice rounds off is what
+//! lies between them. Where two neighbours lie on different smooth pieces, the crease between them is known
+//! exactly: it is where the planes of their facets meet.
+
+mod crease;
+mod cut;
+mod facets;
+mod fitting;
+mod quadric;
+mod safeguard;
+mod simplify;
+mod snap;
+
+pub use facets::{Facets, Side, Sides};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::mesh::TriMesh;
+use crate::progress::{Progress, Stopped};
+use crease::{Place, SMOOTH};
+
+/// A surface whose vertices know the facets they lie on.
+#[derive(Debug, Clone, Default)]
+pub struct Surface {
+    /// The surface, model units; every coordinate is an `f32`.
+    pub mesh: TriMesh,
+    /// One for each vertex.
+    pub sides: Vec<Sides>,
+}
+
+impl Surface {
+    fn at(&self, vertex: u32) -> DVec3 {
+        self.mesh.positions[vertex as usize]
+    }
+
+    fn place(&self, vertex: u32) -> Place {
+        Place { at: self.at(vertex), sides: self.sides[vertex as usize] }
+    }
+
+    /// Whether the corners of a triangle have facets of one smooth piece, or one of them none.
+    fn is_smooth(&self, facets: &Facets<'_>, t: u32) -> bool {
+        let [a, b, c] = self.mesh.triangles[t as usize].map(|v| self.sides[v as usize]);
+        let near = |p: Side, q: Side| facets.plane(p).normal.dot(facets.plane(q).normal) > SMOOTH;
+        let any = a.is_empty() || b.is_empty() || c.is_empty();
+        any || a.iter().any(|p| b.iter().any(|q| near(p, q) && c.iter().any(|r| near(q, r) && near(p, r))))
+    }
+
+    /// The facet, of those that a corner of a triangle lies on, whose smooth piece all corners share and
+    /// that agrees best with the normal.
+    fn common_side(&self, facets: &Facets<'_>, t: u32) -> Option<Side> {
+        let [a, b, c] = self.mesh.triangles[t as usize].map(|v| self.sides[v as usize]);
+        let (normal, _) = snap::shape(self.mesh.corners(t as usize));
+        let facing = |side: &Side| facets.plane(*side).normal.dot(normal);
+        let has = |sides: &Sides, p: Side| {
+            sides.iter().any(|q| p == q || facets.plane(p).normal.dot(facets.plane(q).normal) > SMOOTH)
+        };
+        let all = a.iter().chain(b.iter()).chain(c.iter());
+        all.filter(|&p| has(&a, p) && has(&b, p) && has(&c, p)).max_by(|p, q| facing(p).total_cmp(&facing(q)))
+    }
+}
+
+/// A point whose coordinates any format holds unchanged.
+fn rounded(p: DVec3) -> DVec3 {
+    p.as_vec3().as_dvec3()
+}
+
+/// The triangles around each vertex.
+pub(crate) struct Around {
+    starts: Vec<u32>,
+    triangles: Vec<u32>,
+}
+
+impl Around {
+    fn new(mesh: &TriMesh) -> Self {
+        let mut starts = vec![0u32; mesh.positions.len() + 1];
+        mesh.triangles.iter().flatten().for_each(|&v| starts[v as usize] += 1);
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut triangles = vec![0; sum as usize];
+        for (id, triangle) in mesh.triangles.iter().enumerate().rev() {
+            for &v in triangle {
+                starts[v as usize] -= 1;
+                triangles[starts[v as usize] as usize] = id as u32;
+            }
+        }
+        Self { starts, triangles }
+    }
+
+    fn of(&self, vertex: u32) -> &[u32] {
+        &self.triangles[self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize]
+    }
+}
+
+/// Rounds of undoing after which the surface stays as it was. Real meshes take up to 10.
+const MOST_ROUNDS: usize = 24;
+
+/// Options of [`sharpen`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FitOptions {
+    /// A crease that lies nearer to the surface than this, h, is left out.
+    pub sag: f64,
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self { sag: 0.02 }
+    }
+}
+
+/// What [`sharpen`] did.
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
+pub struct FitReport {
+    /// Vertices moved onto a crease or corner.
+    pub moved: usize,
+    /// Points inserted on creases.
+    pub inserted: usize,
+    /// Places where a crease was left rounded, because the surface would have met itself.
+    pub given_up: usize,
+}
+
+/// Brings back creases and corners.
+pub fn sharpen(
+    home: &Surface,
+    facets: &Facets<'_>,
+    h: f64,
+    options: &FitOptions,
+    progress: &Progress,
+) -> Result<(Surface, FitReport), Stopped> {
+    let mut fitting = fitting::Fitting::new(home, facets, h, options);
+    for _ in 0..MOST_ROUNDS {
+        progress.check()?;
+        let cut = cut::cut(&fitting.surface, facets, h, &fitting.points, &fitting.plain);
+        let changed = fitting.changed(&cut.origin);
+        let before = |t: u32| snap::shape(home.mesh.corners(cut.origin[t as usize] as usize)).0;
+        let mut bad = safeguard::misshapen(&cut.surface, facets, h, &changed, before);
+        bad.extend(safeguard::meeting(&cut.surface.mesh, h, &changed, progress)?);
+        if std::env::var("MW_DEBUG").is_ok() {
+            eprintln!("round: {} points, {} changed of {}, {} bad", fitting.points.len(), changed.len(), cut.origin.len(), bad.len());
+        }
+        if bad.is_empty() {
+            return Ok((cut.surface, fitting.report()));
+        }
+        let mut bad: Vec<u32> = bad.into_iter().map(|t| cut.origin[t as usize]).collect();
+        bad.sort_unstable();
+        bad.dedup();
+        fitting.undo(&bad, &cut.centred);
+    }
+    Ok((home.clone(), FitReport::default()))
+}
+
+/// Fewer triangles, by collapse within `tolerance` (h).
+pub fn simplified(
+    surface: Surface,
+    facets: &Facets<'_>,
+    h: f64,
+    tolerance: f64,
+    progress: &Progress,
+) -> Result<Surface, Stopped> {
+    let mut frozen = vec![false; surface.mesh.positions.len()];
+    for round in 0..6 {
+        let simple = simplify::simplify(&surface, facets, h, tolerance, &frozen, progress)?;
+        let bad = crate::mesh::intersecting_triangles(&simple.mesh, progress)?;
+        if std::env::var("MW_DEBUG").is_ok() {
+            eprintln!("simplified {round}: {} of {}; {} meet", simple.mesh.triangles.len(), surface.mesh.triangles.len(), bad.len());
+        }
+        if bad.is_empty() {
+            return Ok(simple);
+        }
+        let reach = 2.0 * h * f64::from(1 << round);
+        let boxes: Vec<(DVec3, DVec3)> = bad
+            .iter()
+            .map(|&t| {
+                let [a, b, c] = simple.mesh.corners(t as usize);
+                (a.min(b).min(c) - reach, a.max(b).max(c) + reach)
+            })
+            .collect();
+        frozen.par_iter_mut().zip(&surface.mesh.positions).for_each(|(frozen, p)| {
+            *frozen |= boxes.iter().any(|(low, high)| p.cmpge(*low).all() && p.cmple(*high).all());
+        });
+    }
+    Ok(surface)
+}

@@ -1,0 +1,70 @@
+//! What must not have happened: triangles that vanished, turned over, or meet others.
+
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
+use rustc_hash::FxHashSet;
+
+use super::Surface;
+use super::facets::Facets;
+use super::snap::shape;
+use crate::mesh::{TriMesh, intersecting_triangles};
+use crate::progress::{Progress, Stopped};
+
+/// The least height of a triangle, h: some steps of `f32` at the largest lattices.
+const LEAST_HEIGHT: f64 = 2e-4;
+
+/// The triangles of `surface` among `changed` that are too thin or turned over against the facets
+/// they lie on. `before` gives the normal that a triangle must at least agree with where nothing is
+/// known of its facets.
+pub(super) fn misshapen(
+    surface: &Surface,
+    facets: &Facets<'_>,
+    h: f64,
+    changed: &[u32],
+    before: impl Fn(u32) -> DVec3 + Sync,
+) -> Vec<u32> {
+    let wrong = |&t: &u32| {
+        let corners = surface.mesh.corners(t as usize);
+        let (normal, height) = shape(corners);
+        if height.is_nan() || height < LEAST_HEIGHT * h {
+            return true;
+        }
+        match surface.common_side(facets, t) {
+            Some(side) => normal.dot(facets.plane(side).normal) <= 0.0,
+            None => normal.dot(before(t)) <= 0.0,
+        }
+    };
+    changed.par_iter().copied().filter(wrong).collect()
+}
+
+/// Pieces of space, in h, by which triangles that could meet are found.
+const BLOCK: f64 = 4.0;
+
+/// The triangles that meet others, ascending. Pairs of triangles that are both not `changed` are known to be
+/// apart.
+pub(super) fn meeting(mesh: &TriMesh, h: f64, changed: &[u32], progress: &Progress) -> Result<Vec<u32>, Stopped> {
+    if 4 * changed.len() > mesh.triangles.len() {
+        return intersecting_triangles(mesh, progress);
+    }
+    let size = BLOCK * h;
+    let block = |p: DVec3| (p / size).floor().as_ivec3();
+    let blocks = |t: usize| {
+        let corners = mesh.corners(t);
+        let low = block(corners[0].min(corners[1]).min(corners[2]));
+        let high = block(corners[0].max(corners[1]).max(corners[2]));
+        let steps = high - low + 1;
+        (0..steps.x * steps.y * steps.z).map(move |k| {
+            low + IVec3::new(k % steps.x, k / steps.x % steps.y, k / (steps.x * steps.y))
+        })
+    };
+    let touched: FxHashSet<IVec3> = changed.iter().flat_map(|&t| blocks(t as usize)).collect();
+    let near: Vec<u32> = (0..mesh.triangles.len() as u32)
+        .into_par_iter()
+        .filter(|&t| blocks(t as usize).any(|b| touched.contains(&b)))
+        .collect();
+    let part = TriMesh {
+        positions: mesh.positions.clone(),
+        triangles: near.iter().map(|&t| mesh.triangles[t as usize]).collect(),
+    };
+    Ok(intersecting_triangles(&part, progress)?.into_iter().map(|t| near[t as usize]).collect())
+}

@@ -1,0 +1,211 @@
+//! Fewer triangles for the same surface: collapse of edges that lie on flat or nearly flat parts.
+//!
+//! A vertex is moved into one of its neighbours, so that vertices stay where they were fitted. In
+//! each pass all vertices are judged in parallel and those that may go are taken in the order of
+//! their cost, as long as nothing near them has changed.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Surface;
+use super::facets::Facets;
+use super::quadric::Quadric;
+use super::snap::shape;
+use crate::mesh::{HalfEdges, TriMesh};
+use crate::progress::{Progress, Stopped};
+
+/// By how much a triangle may turn away from the facets of its corners (one minus the cosine,
+/// 12°), unless the triangles it replaces did so already.
+const TURN: f64 = 0.022;
+
+/// Vertices of more edges than this take no more.
+const MOST_EDGES: usize = 96;
+
+/// The least height of a triangle, h, unless the ones before were lower.
+const LEAST_HEIGHT: f64 = 5e-3;
+
+/// Passes after which the rest stays.
+const MOST_PASSES: usize = 200;
+
+/// The surface while it is simplified.
+struct Work<'a> {
+    surface: &'a Surface,
+    facets: &'a Facets<'a>,
+    edges: HalfEdges,
+    quadrics: Vec<Quadric>,
+    /// Lattice units.
+    at: Vec<DVec3>,
+    /// Squared tolerance, h².
+    most: f64,
+}
+
+/// A collapse that may be done.
+#[derive(Debug, Clone, Copy)]
+struct Wish {
+    cost: f64,
+    vertex: u32,
+    half_edge: u32,
+}
+
+/// Collapses edges as long as the surface stays within `tolerance` (h) of where it was. Vertices in `frozen` stay.
+pub(super) fn simplify(
+    surface: &Surface,
+    facets: &Facets<'_>,
+    h: f64,
+    tolerance: f64,
+    frozen: &[bool],
+    progress: &Progress,
+) -> Result<Surface, Stopped> {
+    let Ok(edges) = HalfEdges::new(&surface.mesh.triangles, surface.mesh.positions.len()) else {
+        return Ok(surface.clone());
+    };
+    let debug = std::env::var("MW_DEBUG").is_ok();
+    let start = std::time::Instant::now();
+    let at: Vec<DVec3> = surface.mesh.positions.par_iter().map(|p| *p / h).collect();
+    let quadrics = quadrics(&edges, &at);
+    let mut work = Work { surface, facets, edges, quadrics, at, most: tolerance * tolerance };
+    let mut active: Vec<u32> = (0..work.at.len() as u32).filter(|&v| !frozen[v as usize]).collect();
+    let mut locked = vec![0u32; work.at.len()];
+    if debug {
+        eprintln!("simplify: set up {:?}", start.elapsed());
+    }
+    for pass in 1..=MOST_PASSES as u32 {
+        progress.check()?;
+        let mut wishes: Vec<Wish> = active.par_iter().with_min_len(64).filter_map(|&v| work.wish(v)).collect();
+        wishes.par_sort_unstable_by(|a, b| a.cost.total_cmp(&b.cost).then(a.half_edge.cmp(&b.half_edge)));
+        let mut done = 0;
+        let mut next = Vec::new();
+        for wish in &wishes {
+            let vertex = wish.vertex;
+            if locked[vertex as usize] == pass {
+                next.push(vertex);
+                continue;
+            }
+            let ring: Vec<u32> = work.edges.ring(vertex).map(|e| work.edges.target(e)).collect();
+            if work.collapse(wish.half_edge) {
+                done += 1;
+                ring.iter().for_each(|&v| locked[v as usize] = pass);
+                next.extend(ring);
+            }
+        }
+        if debug && (pass < 4 || pass % 10 == 0 || done == 0) {
+            eprintln!("pass {pass}: {} active, {} wishes, {done} done, {:?}", active.len(), wishes.len(), start.elapsed());
+        }
+        if done == 0 {
+            break;
+        }
+        next.par_sort_unstable();
+        next.dedup();
+        active = next.into_iter().filter(|&v| !frozen[v as usize] && work.edges.is_live_vertex(v)).collect();
+    }
+    let compacted = work.edges.compacted();
+    let positions = compacted.vertices.iter().map(|&v| surface.at(v)).collect();
+    let sides = compacted.vertices.iter().map(|&v| surface.sides[v as usize]).collect();
+    Ok(Surface { mesh: TriMesh { positions, triangles: compacted.triangles }, sides })
+}
+
+/// For each vertex the distances from the planes of its triangles.
+fn quadrics(edges: &HalfEdges, at: &[DVec3]) -> Vec<Quadric> {
+    let of = |v: usize| {
+        let mut sum = Quadric::default();
+        for e in edges.ring(v as u32) {
+            let [a, b, c] = edges.triangle(e / 3).map(|v| at[v as usize]);
+            let n = (b - a).cross(c - a).normalize_or_zero();
+            sum += Quadric::plane(n, at[v]);
+        }
+        sum
+    };
+    (0..at.len()).into_par_iter().map(of).collect()
+}
+
+impl Work<'_> {
+    /// The best collapse of a vertex into a neighbour.
+    fn wish(&self, vertex: u32) -> Option<Wish> {
+        if !self.edges.is_live_vertex(vertex) {
+            return None;
+        }
+        let mut best: [(f64, f64, u32); 3] = [(f64::INFINITY, 0.0, 0); 3];
+        for e in self.edges.ring(vertex) {
+            let to = self.edges.target(e);
+            let cost = self.cost(vertex, to);
+            let entry = (cost, self.at[to as usize].distance_squared(self.at[vertex as usize]), e);
+            if cost <= self.most && self.edges.valence(to) < MOST_EDGES {
+                let place = best.iter().position(|b| entry.0 < b.0 || (entry.0 == b.0 && entry.1 < b.1));
+                if let Some(k) = place {
+                    best[k..].rotate_right(1);
+                    best[k] = entry;
+                }
+            }
+        }
+        let worst = self.worst(vertex);
+        best.iter().take_while(|b| b.0.is_finite()).find(|b| self.allowed(vertex, b.2, worst)).map(|b| Wish {
+            cost: b.0,
+            vertex,
+            half_edge: b.2,
+        })
+    }
+
+    /// What it costs to move `vertex` into `to`. Coarse, so that on flat parts the shortest edges go first.
+    fn cost(&self, vertex: u32, to: u32) -> f64 {
+        let p = self.at[to as usize];
+        let cost = self.quadrics[vertex as usize].at(p) + self.quadrics[to as usize].at(p);
+        let length = p.distance_squared(self.at[vertex as usize]);
+        cost + 1e-9 * length.min(1e3)
+    }
+
+    /// The worst turn and the least height of the triangles around a vertex.
+    fn worst(&self, vertex: u32) -> (f64, f64) {
+        self.edges.ring(vertex).fold((TURN, LEAST_HEIGHT), |worst, e| {
+            let t = self.edges.triangle(e / 3);
+            let (turn, height) = self.turn(t, t);
+            (worst.0.max(turn), worst.1.min(height))
+        })
+    }
+
+    /// Whether the triangles that stay keep facing where their facets do, and the mesh a manifold.
+    fn allowed(&self, vertex: u32, half_edge: u32, (turn, height): (f64, f64)) -> bool {
+        let to = self.edges.target(half_edge);
+        let own = [half_edge / 3, self.edges.twin(half_edge) / 3];
+        let fine = self.edges.ring(vertex).filter(|e| !own.contains(&(e / 3))).all(|e| {
+            let before = self.edges.triangle(e / 3);
+            let after = before.map(|v| if v == vertex { to } else { v });
+            let (turned, low) = self.turn(after, before);
+            turned <= turn && low >= height
+        });
+        fine && self.edges.can_collapse(half_edge)
+    }
+
+    /// By how much a triangle faces away from the facets of its corners: for each corner the facet
+    /// that agrees best, and of these the worst; one minus the cosine. And its height. For corners without
+    /// facets `before` is asked.
+    fn turn(&self, t: [u32; 3], before: [u32; 3]) -> (f64, f64) {
+        let (normal, height) = shape(t.map(|v| self.at[v as usize]));
+        let normal = normal.normalize_or_zero();
+        let mut worst = 0.0f64;
+        for v in t {
+            let sides = &self.surface.sides[v as usize];
+            let agreement = if sides.is_empty() {
+                let (normal_before, _) = shape(before.map(|v| self.at[v as usize]));
+                normal.dot(normal_before.normalize_or_zero())
+            } else {
+                sides.iter().map(|s| self.facets.plane(s).normal.dot(normal)).fold(-1.0, f64::max)
+            };
+            worst = worst.max(1.0 - agreement);
+        }
+        (worst, height)
+    }
+
+    fn collapse(&mut self, half_edge: u32) -> bool {
+        if !self.edges.can_collapse(half_edge) {
+            return false;
+        }
+        let (vertex, to) = (self.edges.origin(half_edge), self.edges.target(half_edge));
+        if self.cost(vertex, to) > self.most {
+            return false;
+        }
+        let quadric = self.quadrics[vertex as usize];
+        self.quadrics[to as usize] += quadric;
+        self.edges.collapse_unchecked(half_edge);
+        true
+    }
+}
