@@ -1,7 +1,7 @@
 //! What every fuzz target asks of a reader: no panic, and either an error with a message or a
 //! mesh that keeps the promise and can be written and read again.
 
-use meshwright::io::{Format, WriteOptions, encode, read_bytes};
+use meshwright::io::{Carried, Format, WriteOptions, encode_coloured, read_bytes};
 
 /// Reads `data` as `format` and checks what comes out.
 pub fn check(data: &[u8], format: Format) {
@@ -19,12 +19,18 @@ pub fn check(data: &[u8], format: Format) {
     assert!(mesh.triangles.iter().flatten().all(|&v| (v as usize) < mesh.positions.len()));
     assert!(!loaded.parts.is_empty());
     assert!(loaded.parts.iter().all(|p| p.triangles.start < p.triangles.end && p.triangles.end <= mesh.triangles.len()));
-    // PLY holds doubles, so nothing may change on the way.
+    // PLY holds doubles and the colours of vertices or faces, so nothing may change on the way.
     if mesh.triangles.len() < 10_000 {
         let mut bytes = Vec::new();
-        encode(mesh, &WriteOptions::new(Format::Ply), &mut bytes).expect("what was read can be written");
+        let colours = loaded.colours.as_ref();
+        encode_coloured(mesh, colours, &WriteOptions::new(Format::Ply), &mut bytes).expect("what was read can be written");
         let again = read_bytes(&bytes, None, None).expect("what was written can be read");
         assert_eq!(&again.mesh, mesh);
+        match colours {
+            Some(colours) if colours.carried_by(Format::Ply, mesh) == Carried::Wholly => assert_eq!(again.colours.as_ref(), Some(colours)),
+            Some(_) => assert!(again.colours.is_some()),
+            None => assert_eq!(again.colours, None),
+        }
     }
 }
 

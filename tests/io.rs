@@ -1,6 +1,8 @@
 //! Files in and out: every real mesh reads, every format round-trips, and no file, however
 //! hostile, does more than return an error.
 
+#[path = "io/colours.rs"]
+mod colours;
 #[path = "io/formats.rs"]
 mod formats;
 #[path = "io/hostile.rs"]

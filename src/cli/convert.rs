@@ -9,7 +9,7 @@ use super::output::{Target, write_verified};
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
 use super::words;
-use crate::io::Loaded;
+use crate::io::{Carried, Colours, Format, Loaded};
 use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
 
 /// Reads one file and writes it again.
@@ -29,10 +29,12 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     if input.loaded.parts.len() > 1 {
         report.warnings.push(format!("the {} objects of the input become one", input.loaded.parts.len()));
     }
+    report.warnings.extend(colour_note(&input.loaded, target.options.format));
     let before = state(&input.loaded.mesh, session)?;
     let (entry, after) = report.timed("write and verify", |_| {
-        write_verified(&target, &input.loaded.mesh, session, |read| {
+        write_verified(&target, &input.loaded.mesh, input.loaded.colours.as_ref(), session, |read| {
             check_close(read, &input.loaded.mesh)?;
+            check_colours(read, &input.loaded)?;
             state(&read.mesh, session)
         })
     })?;
@@ -70,6 +72,29 @@ fn check_close(read: &Loaded, mesh: &TriMesh) -> Result<(), Failure> {
             (0..3).all(|i| close(a[i], b[i]))
         });
     if same { Ok(()) } else { Err(Failure::internal("the file does not hold what was written to it; it was removed")) }
+}
+
+/// Whether the file has the colours, where its format holds them.
+fn check_colours(read: &Loaded, given: &Loaded) -> Result<(), Failure> {
+    let Some(colours) = &given.colours else { return Ok(()) };
+    let same = |found: &Colours| {
+        (0..given.mesh.triangles.len()).all(|t| colours.corners(&given.mesh, t) == found.corners(&read.mesh, t))
+    };
+    match colours.carried_by(read.format, &given.mesh) {
+        Carried::Wholly if !read.colours.as_ref().is_some_and(same) => {
+            Err(Failure::internal("the file does not hold the colours that were written to it; it was removed"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What becomes of colours that the format has no place for.
+fn colour_note(given: &Loaded, format: Format) -> Option<String> {
+    match given.colours.as_ref()?.carried_by(format, &given.mesh) {
+        Carried::Wholly => None,
+        Carried::Roughly => Some(format!("{format} has no place for colours of this kind; they were averaged")),
+        Carried::Not => Some(format!("{format} holds no colours; they are left out")),
+    }
 }
 
 /// What the rounding to the format's numbers made worse.

@@ -8,7 +8,7 @@ use super::exit::Failure;
 use super::input::{is_stream, plain_reason, sha256};
 use super::report::OutputEntry;
 use super::session::Session;
-use crate::io::{self, Format, Loaded, Unit, WriteOptions};
+use crate::io::{self, Colours, Format, Loaded, Unit, WriteOptions};
 use crate::mesh::TriMesh;
 
 /// Where a mesh goes, and how it is encoded.
@@ -86,28 +86,34 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Writes `mesh`, reads it back, and lets `judge` look at what was read. Only when that is content
+/// Writes `mesh` with its colours, if it has some, reads it back, and lets `judge` look at what was read. Only when that is content
 /// does the file appear under its name; before, it has a temporary name in the same folder, and if
 /// anything fails nothing is left. Streams and devices get their bytes after the judgement.
 pub fn write_verified<T>(
     target: &Target,
     mesh: &TriMesh,
+    colours: Option<&Colours>,
     session: &Session,
     judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
 ) -> Result<(OutputEntry, T), Failure> {
     session.progress.stage("write")?;
     let direct = is_stream(&target.path) || target.path.metadata().is_ok_and(|metadata| !metadata.is_file());
-    if direct { write_direct(target, mesh, session, judge) } else { write_file(target, mesh, session, judge) }
+    if direct {
+        write_direct(target, mesh, colours, session, judge)
+    } else {
+        write_file(target, mesh, colours, session, judge)
+    }
 }
 
 fn write_direct<T>(
     target: &Target,
     mesh: &TriMesh,
+    colours: Option<&Colours>,
     session: &Session,
     judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
 ) -> Result<(OutputEntry, T), Failure> {
     let mut bytes = Vec::new();
-    encode(target, mesh, &mut bytes)?;
+    encode(target, mesh, colours, &mut bytes)?;
     session.progress.stage("verify")?;
     let verdict = judge(&read_back(&bytes, target)?)?;
     session.finish(|| match is_stream(&target.path) {
@@ -120,6 +126,7 @@ fn write_direct<T>(
 fn write_file<T>(
     target: &Target,
     mesh: &TriMesh,
+    colours: Option<&Colours>,
     session: &Session,
     judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
 ) -> Result<(OutputEntry, T), Failure> {
@@ -131,7 +138,7 @@ fn write_file<T>(
     })?;
     session.temporary(file.path());
     let mut buffer = std::io::BufWriter::with_capacity(1 << 20, file.as_file());
-    encode(target, mesh, &mut buffer)?;
+    encode(target, mesh, colours, &mut buffer)?;
     buffer.flush().map_err(|e| failed(&e))?;
     drop(buffer);
     file.as_file().sync_all().map_err(|e| failed(&e))?;
@@ -159,8 +166,8 @@ fn temporary_file(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     builder.tempfile_in(folder_of(path))
 }
 
-fn encode(target: &Target, mesh: &TriMesh, out: &mut dyn Write) -> Result<(), Failure> {
-    io::encode(mesh, &target.options, out)
+fn encode(target: &Target, mesh: &TriMesh, colours: Option<&Colours>, out: &mut dyn Write) -> Result<(), Failure> {
+    io::encode_coloured(mesh, colours, &target.options, out)
         .map_err(|e| Failure::internal(format!("cannot write {}: {e}", target.path.display())))
 }
 

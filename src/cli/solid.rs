@@ -138,7 +138,7 @@ fn make(
     report.warnings.extend(outcome.report.warnings.iter().cloned());
     report.pipeline = Some(outcome.report);
     let (entry, validity) = report.timed("write and verify", |_| {
-        write_verified(target, &outcome.mesh, session, |read| judge(read, &outcome.mesh, session))
+        write_verified(target, &outcome.mesh, None, session, |read| judge(read, &outcome.mesh, session))
     })?;
     report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
     let broken = limits::broken(report, options.max_memory);

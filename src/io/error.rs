@@ -211,6 +211,14 @@ pub enum WriteProblem {
         /// The format to be written.
         format: Format,
     },
+    /// Not one colour for each triangle or vertex.
+    #[error("there are {found} colours where {expected} are needed, one for each triangle or vertex")]
+    Colours {
+        /// How many colours there are.
+        found: usize,
+        /// How many triangles, or vertices, there are.
+        expected: usize,
+    },
     /// The format counts in 32 bits and the mesh is larger; PLY holds the most.
     #[error("the mesh is too large for {format}")]
     TooLarge {

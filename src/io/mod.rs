@@ -19,6 +19,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod colour;
 mod error;
 mod format;
 mod gltf;
@@ -40,6 +41,7 @@ use std::path::Path;
 
 use crate::mesh::TriMesh;
 
+pub use colour::{Carried, Colours, Rgba};
 pub use error::{Place, ReadError, ReadProblem, WriteError, WriteProblem};
 pub use format::{Format, UnknownFormat};
 pub use ply::{VertexMap, encode_vertex_map};
@@ -60,6 +62,8 @@ pub struct Part {
 pub struct Loaded {
     /// The triangles: at least one; every coordinate finite, every index in range.
     pub mesh: TriMesh,
+    /// The colours of `mesh`, one for each triangle, vertex or corner; `None` where the file has none.
+    pub colours: Option<Colours>,
     /// The format that was found.
     pub format: Format,
     /// The unit of length that the file states.
@@ -128,23 +132,56 @@ pub fn write(path: &Path, mesh: &TriMesh, options: &WriteOptions) -> Result<(), 
     save::save(path, |out| encode(mesh, options, out))
 }
 
+/// [`write()`] with colours, as [`encode_coloured`] stores them.
+///
+/// # Errors
+/// See [`WriteProblem`].
+pub fn write_coloured(
+    path: &Path,
+    mesh: &TriMesh,
+    colours: Option<&Colours>,
+    options: &WriteOptions,
+) -> Result<(), WriteError> {
+    save::save(path, |out| encode_coloured(mesh, colours, options, out))
+}
+
 /// Writes `mesh` as bytes to `out`. Coordinates are stored as they are where the format holds
 /// `f64`, and rounded to `f32` in STL, glTF and GLB.
 ///
 /// # Errors
 /// See [`WriteProblem`]. The mesh is checked before the first byte is written.
 pub fn encode(mesh: &TriMesh, options: &WriteOptions, out: &mut dyn Write) -> Result<(), WriteError> {
+    encode_coloured(mesh, None, options, out)
+}
+
+/// [`encode`] with the colours of `mesh`, one for each triangle, vertex or corner. What the format cannot hold is left
+/// out or averaged; [`Colours::carried_by`] tells. GLB and glTF repeat a vertex where colours meet; the other formats
+/// keep the vertices as they are.
+///
+/// # Errors
+/// See [`WriteProblem`]. Mesh and colours are checked before the first byte is written.
+pub fn encode_coloured(
+    mesh: &TriMesh,
+    colours: Option<&Colours>,
+    options: &WriteOptions,
+    out: &mut dyn Write,
+) -> Result<(), WriteError> {
     check(mesh, options.format)?;
+    if let Some([found, expected]) = colours.map(|colours| colours.counts(mesh))
+        && found != expected
+    {
+        return Err(WriteProblem::Colours { found, expected }.into());
+    }
     match options.format {
         Format::Stl if options.ascii => stl::write_ascii(mesh, out),
         Format::Stl => stl::write_binary(mesh, out),
-        Format::Obj => obj::write(mesh, out),
-        Format::Ply if options.ascii => ply::write_ascii(mesh, out),
-        Format::Ply => ply::write_binary(mesh, out),
-        Format::Off => off::write(mesh, out),
-        Format::Glb => gltf::write_glb(mesh, options.unit, out),
-        Format::Gltf => gltf::write_json(mesh, options.unit, out),
-        Format::ThreeMf => three_mf::write(mesh, options.unit, out),
+        Format::Obj => obj::write(mesh, colours, out),
+        Format::Ply if options.ascii => ply::write_ascii(mesh, colours, out),
+        Format::Ply => ply::write_binary(mesh, colours, out),
+        Format::Off => off::write(mesh, colours, out),
+        Format::Glb => gltf::write_glb(mesh, colours, options.unit, out),
+        Format::Gltf => gltf::write_json(mesh, colours, options.unit, out),
+        Format::ThreeMf => three_mf::write(mesh, colours, options.unit, out),
     }
 }
 

@@ -1,10 +1,11 @@
-//! Wavefront OBJ: vertices, faces, objects and groups; everything else is passed over.
+//! Wavefront OBJ: vertices with or without colours, faces, objects and groups; everything else is passed over.
 
 use std::borrow::Cow;
 use std::io::Write;
 
 use glam::DVec3;
 
+use super::colour::{Colours, LEVELS_OF_WHITE, vertex_means};
 use super::error::{ReadError, ReadProblem, WriteError};
 use super::soup::{Soup, counted, too_many_vertices};
 use super::text::{Lines, TextOut, Words, integer, number, quoted, quoted_or_end};
@@ -77,7 +78,7 @@ impl Reader {
         }
     }
 
-    /// Three coordinates; a weight or a colour after them is passed over.
+    /// Three coordinates, and a colour if exactly three numbers follow; anything else after them is passed over.
     fn vertex(&mut self, mut words: Words<'_>, at: usize) -> Result<(), ReadError> {
         let mut p = DVec3::ZERO;
         for k in 0..3 {
@@ -91,7 +92,11 @@ impl Reader {
         if self.soup.positions.len() >= u32::MAX as usize {
             return Err(too_many_vertices());
         }
+        let vertex = self.soup.positions.len();
         self.soup.positions.push(p);
+        if let Some(levels) = colour(words) {
+            self.soup.colours.vertices.put(vertex..vertex + 1, levels);
+        }
         Ok(())
     }
 
@@ -135,6 +140,18 @@ impl Reader {
     }
 }
 
+/// Red, green and blue, if `words` are that and no more than a comment follows.
+#[inline]
+fn colour(words: Words<'_>) -> Option<[f32; 4]> {
+    let mut levels = LEVELS_OF_WHITE;
+    let mut count = 0;
+    for word in words.take_while(|word| !word.starts_with(b"#")) {
+        *levels[..3].get_mut(count)? = number(word)? as f32;
+        count += 1;
+    }
+    (count == 3).then_some(levels)
+}
+
 /// The vertex of a face corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, from 0: files count from 1, or
 /// backwards from the last vertex so far.
 #[inline]
@@ -148,14 +165,22 @@ fn corner(word: &[u8], count: usize) -> Result<u32, ReadProblem> {
         .ok_or_else(|| ReadProblem::vertex(index, count))
 }
 
-/// Writes positions and triangles.
-pub(super) fn write(mesh: &TriMesh, out: &mut dyn Write) -> Result<(), WriteError> {
+/// Writes positions, with a colour after each if there are colours, and triangles.
+pub(super) fn write(mesh: &TriMesh, colours: Option<&Colours>, out: &mut dyn Write) -> Result<(), WriteError> {
     let mut text = TextOut::new(out);
-    for p in &mesh.positions {
+    let colours = colours.map(|colours| vertex_means(mesh, colours));
+    for (vertex, p) in mesh.positions.iter().enumerate() {
         text.text("v");
         for x in p.to_array() {
             text.text(" ");
             text.number(x);
+        }
+        if let Some(colour) = colours.as_ref().and_then(|colours| colours.get(vertex)) {
+            for level in &colour[..3] {
+                // Four digits tell 256 levels apart.
+                text.text(" ");
+                text.number((f64::from(*level) / 255.0 * 1e4).round() / 1e4);
+            }
         }
         text.text("\n");
         text.pass_on()?;

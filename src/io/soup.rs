@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
+use super::colour::Gathered;
 use super::error::{ReadError, ReadProblem};
 use super::polygon;
 use super::{Format, Loaded, Part, Unit};
@@ -19,6 +20,8 @@ pub(super) struct Soup {
     pub(super) triangles: Vec<[u32; 3]>,
     /// Sentences about what was read otherwise than it stands.
     pub(super) warnings: Vec<String>,
+    /// Colours of what has some.
+    pub(super) colours: Gathered,
     parts: Vec<Part>,
     narrow_faces: usize,
     folded_polygons: usize,
@@ -31,6 +34,7 @@ impl Soup {
             positions: Vec::new(),
             triangles: Vec::new(),
             warnings: Vec::new(),
+            colours: Gathered::default(),
             parts: Vec::new(),
             narrow_faces: 0,
             folded_polygons: 0,
@@ -102,7 +106,8 @@ impl Soup {
         self.positions.shrink_to_fit();
         self.triangles.shrink_to_fit();
         let mesh = TriMesh { positions: self.positions, triangles: self.triangles };
-        Ok(Loaded { mesh, format, unit, parts: self.parts, warnings: self.warnings })
+        let colours = self.colours.finish(&mesh, &mut self.warnings);
+        Ok(Loaded { mesh, colours, format, unit, parts: self.parts, warnings: self.warnings })
     }
 }
 

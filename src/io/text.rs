@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 
+use super::colour::Tails;
 use crate::mesh::TriMesh;
 
 /// The lines of a text with their numbers, from 1. Ends of lines may be LF, CR LF or, in a text
@@ -164,22 +165,32 @@ impl<'a> TextOut<'a> {
         self.text(itoa::Buffer::new().format(value));
     }
 
-    /// A line for each position, then a line for each triangle: 3 and its vertices, from 0.
-    pub(super) fn rows(&mut self, mesh: &TriMesh) -> io::Result<()> {
-        for p in &mesh.positions {
+    /// Each value after a space.
+    pub(super) fn channels(&mut self, values: &[u8]) {
+        for &value in values {
+            self.text(" ");
+            self.integer(u64::from(value));
+        }
+    }
+
+    /// A line for each position, then a line for each triangle: 3 and its vertices, from 0. Each ends in its tail.
+    pub(super) fn rows(&mut self, mesh: &TriMesh, tails: &Tails<'_>) -> io::Result<()> {
+        for (vertex, p) in mesh.positions.iter().enumerate() {
             for (k, x) in p.to_array().into_iter().enumerate() {
                 self.text(if k == 0 { "" } else { " " });
                 self.number(x);
             }
+            self.channels(tails.vertex(vertex));
             self.text("\n");
             self.pass_on()?;
         }
-        for t in &mesh.triangles {
+        for (face, t) in mesh.triangles.iter().enumerate() {
             self.text("3");
             for v in t {
                 self.text(" ");
                 self.integer(u64::from(*v));
             }
+            self.channels(tails.face(face));
             self.text("\n");
             self.pass_on()?;
         }

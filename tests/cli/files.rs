@@ -102,6 +102,30 @@ fn convert_keeps_every_triangle_in_every_format() {
 }
 
 #[test]
+fn convert_keeps_colours_and_says_where_it_cannot() {
+    let folder = folder();
+    let read = |name: &str| meshwright::io::read(&folder.path().join(name)).expect("it is sound");
+    let off =
+        "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1 255 0 0\n3 0 1 3 0 0 255\n3 1 2 3 9 8 7\n3 2 0 3 1 2 3\n";
+    std::fs::write(folder.path().join("in.off"), off).unwrap();
+    let colours = read("in.off").colours;
+    assert!(colours.is_some());
+    for format in ["ply", "off", "glb", "gltf", "3mf"] {
+        let text = run_in(&folder, &format!("convert OUT/in.off -o OUT/out.{format}")).exits(0).stderr;
+        assert!(!text.contains("note:"), "{text}");
+        let loaded = read(&format!("out.{format}"));
+        let corners = |loaded: &meshwright::io::Loaded| {
+            let colours = loaded.colours.as_ref().expect("it has colours");
+            (0..4).map(|t| colours.corners(&loaded.mesh, t)).collect::<Vec<_>>()
+        };
+        assert_eq!(corners(&loaded), corners(&read("in.off")), "{format}");
+    }
+    run_in(&folder, "convert OUT/in.off -o OUT/out.stl").exits(0).says(&["stl holds no colours"]);
+    run_in(&folder, "convert OUT/in.off -o OUT/out.obj").exits(0).says(&["obj has no place", "averaged"]);
+    assert!(read("out.obj").colours.is_some());
+}
+
+#[test]
 fn convert_writes_text_when_asked() {
     let folder = folder();
     run_in(&folder, "convert testdata/thin_plate.stl -o OUT/text.stl --ascii").exits(0);

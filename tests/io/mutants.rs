@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
-use meshwright::io::{Format, read_bytes};
+use meshwright::io::{Colours, Format, read_bytes};
 use proptest::prelude::*;
 
-use crate::support::{assert_sound, encoded, every_form, tetrahedron, zipped};
+use crate::support::{assert_sound, encoded, encoded_in_colour, every_form, tetrahedron, zipped};
 
 /// The committed seeds of the fuzzer and every form that the writers have.
 fn originals() -> Vec<(Format, Vec<u8>)> {
     let mut all: Vec<_> = every_form().iter().map(|o| (o.format, encoded(&tetrahedron(), o))).collect();
+    all.extend(every_form().iter().map(|o| (o.format, encoded_in_colour(&tetrahedron(), &four_colours(), o))));
     let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds");
     for format in Format::ALL {
         let folder = seeds.join(if format == Format::ThreeMf { "three_mf" } else { format.name() });
@@ -18,6 +19,11 @@ fn originals() -> Vec<(Format, Vec<u8>)> {
         all.extend(files.iter().map(|file| (format, std::fs::read(file).unwrap())));
     }
     all
+}
+
+/// One for each face of the tetrahedron.
+fn four_colours() -> Colours {
+    Colours::Faces(vec![[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 9], [1, 2, 3, 255]])
 }
 
 #[derive(Debug, Clone)]
@@ -109,13 +115,14 @@ proptest! {
 #[test]
 fn a_file_cut_anywhere_never_passes_for_a_smaller_mesh() {
     for options in every_form() {
-        let bytes = encoded(&tetrahedron(), &options);
-        for length in 0..bytes.len() {
-            if let Ok(loaded) = read_bytes(&bytes[..length], Some(options.format), None) {
-                let whole = loaded.mesh.triangles.len() == 4;
-                // OBJ states no count: a cut between two faces cannot be seen.
-                let unseen = options.format == Format::Obj;
-                assert!(whole || unseen || !loaded.warnings.is_empty(), "{options:?} cut at {length}");
+        for bytes in [encoded(&tetrahedron(), &options), encoded_in_colour(&tetrahedron(), &four_colours(), &options)] {
+            for length in 0..bytes.len() {
+                if let Ok(loaded) = read_bytes(&bytes[..length], Some(options.format), None) {
+                    let whole = loaded.mesh.triangles.len() == 4;
+                    // OBJ states no count: a cut between two faces cannot be seen.
+                    let unseen = options.format == Format::Obj;
+                    assert!(whole || unseen || !loaded.warnings.is_empty(), "{options:?} cut at {length}");
+                }
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Meshes and checks that several tests share.
 
 use glam::DVec3;
-use meshwright::io::{Format, Loaded, WriteOptions, encode};
+use meshwright::io::{Colours, Format, Loaded, WriteOptions, encode, encode_coloured};
 use meshwright::mesh::TriMesh;
 
 /// What every reader promises.
@@ -14,6 +14,12 @@ pub fn assert_sound(loaded: &Loaded) {
     assert_eq!(loaded.parts.last().map(|p| p.triangles.end), Some(mesh.triangles.len()));
     assert!(loaded.parts.windows(2).all(|pair| pair[0].triangles.end == pair[1].triangles.start));
     assert!(loaded.parts.iter().all(|p| !p.triangles.is_empty()));
+    match &loaded.colours {
+        None => {}
+        Some(Colours::Faces(colours)) => assert_eq!(colours.len(), mesh.triangles.len()),
+        Some(Colours::Vertices(colours)) => assert_eq!(colours.len(), mesh.positions.len()),
+        Some(Colours::Corners(colours)) => assert_eq!(colours.len(), mesh.triangles.len()),
+    }
 }
 
 /// A tetrahedron.
@@ -29,6 +35,18 @@ pub fn encoded(mesh: &TriMesh, options: &WriteOptions) -> Vec<u8> {
     let mut bytes = Vec::new();
     encode(mesh, options, &mut bytes).unwrap_or_else(|error| panic!("{error}"));
     bytes
+}
+
+/// The mesh with its colours as a file of `format`.
+pub fn encoded_in_colour(mesh: &TriMesh, colours: &Colours, options: &WriteOptions) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    encode_coloured(mesh, Some(colours), options, &mut bytes).unwrap_or_else(|error| panic!("{error}"));
+    bytes
+}
+
+/// The colours of the corners of the triangles, in order.
+pub fn corner_colours(mesh: &TriMesh, colours: &Colours) -> Vec<[[u8; 4]; 3]> {
+    (0..mesh.triangles.len()).map(|t| colours.corners(mesh, t)).collect()
 }
 
 /// Every way to write a mesh.

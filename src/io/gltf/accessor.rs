@@ -61,14 +61,10 @@ pub(super) fn positions(
 ) -> Result<Vec<[f64; 3]>, ReadError> {
     let fail = |problem| ReadError::item(item(index), problem);
     let accessor = accessor(root, index)?;
-    let Checked::Valid(kind) = &accessor.component_type else {
-        return Err(fail(ReadProblem::syntax("a component type", "another value")));
-    };
+    let kind = component_type(accessor).map_err(fail)?;
     if !matches!(accessor.type_, Checked::Valid(Type::Vec3)) {
         return Err(fail(ReadProblem::syntax("positions of type VEC3", "another type")));
     }
-    let (kind, count) = (kind.0, accessor.count.0);
-    let size = 3 * kind.size();
     let normalized = accessor.normalized;
     let decode = |field: &[u8]| {
         let mut p = [0.0; 3];
@@ -77,14 +73,77 @@ pub(super) fn positions(
         }
         p
     };
+    vectors(root, buffers, index, Shape { size: 3 * kind.size(), zero: [0.0; 3], decode }, allowance)
+}
+
+/// The colours behind accessor `index`: linear light from 0 to 1, then alpha.
+pub(super) fn colours(
+    root: &Root,
+    buffers: &Buffers<'_>,
+    index: Index<Accessor>,
+    allowance: &mut Expansion,
+) -> Result<Vec<[f32; 4]>, ReadError> {
+    let fail = |problem| ReadError::item(item(index), problem);
+    let accessor = accessor(root, index)?;
+    let kind = component_type(accessor).map_err(fail)?;
+    let channels = match (&accessor.type_, kind) {
+        (Checked::Valid(Type::Vec3), ComponentType::F32 | ComponentType::U8 | ComponentType::U16) => 3,
+        (Checked::Valid(Type::Vec4), ComponentType::F32 | ComponentType::U8 | ComponentType::U16) => 4,
+        _ => {
+            let expected = "colours of type VEC3 or VEC4 in floats or unsigned integers of 8 or 16 bits";
+            return Err(fail(ReadProblem::syntax(expected, "another type")));
+        }
+    };
+    let decode = |field: &[u8]| {
+        let mut colour = [1.0; 4];
+        for (x, part) in colour.iter_mut().zip(field.chunks_exact(kind.size())) {
+            // Integers must be normalised; a file that forgets to say so can mean nothing else.
+            *x = component(part, kind, true) as f32;
+        }
+        colour
+    };
+    let mut zero = [0.0; 4];
+    zero[channels..].fill(1.0);
+    vectors(root, buffers, index, Shape { size: channels * kind.size(), zero, decode }, allowance)
+}
+
+fn component_type(accessor: &Accessor) -> Result<ComponentType, ReadProblem> {
+    match &accessor.component_type {
+        Checked::Valid(kind) => Ok(kind.0),
+        Checked::Invalid => Err(ReadProblem::syntax("a component type", "another value")),
+    }
+}
+
+/// What the values of an accessor look like.
+struct Shape<T, F> {
+    /// Bytes of a value.
+    size: usize,
+    /// The value where there are no bytes.
+    zero: T,
+    /// The value of as many bytes.
+    decode: F,
+}
+
+/// The values behind accessor `index`, with sparse ones replaced.
+fn vectors<T: Copy>(
+    root: &Root,
+    buffers: &Buffers<'_>,
+    index: Index<Accessor>,
+    shape: Shape<T, impl Fn(&[u8]) -> T>,
+    allowance: &mut Expansion,
+) -> Result<Vec<T>, ReadError> {
+    let fail = |problem| ReadError::item(item(index), problem);
+    let accessor = accessor(root, index)?;
+    let Shape { size, zero, decode } = shape;
+    let count = accessor.count.0;
     allowance.spend(count).map_err(fail)?;
-    let mut points: Vec<[f64; 3]> = match accessor.buffer_view {
+    let mut values: Vec<T> = match accessor.buffer_view {
         Some(view) => {
             let (bytes, stride) = buffers.view(root, view)?;
             let offset = accessor.byte_offset.unwrap_or_default().0;
-            Fields::new(bytes, offset, stride, size, count).map_err(fail)?.iter().map(decode).collect()
+            Fields::new(bytes, offset, stride, size, count).map_err(fail)?.iter().map(&decode).collect()
         }
-        None => vec![[0.0; 3]; usize::try_from(count).unwrap_or_default()],
+        None => vec![zero; usize::try_from(count).unwrap_or_default()],
     };
     if let Some(sparse) = &accessor.sparse {
         let (bytes, _) = buffers.view(root, sparse.indices.buffer_view)?;
@@ -92,14 +151,14 @@ pub(super) fn positions(
             integers(bytes, sparse.indices.byte_offset.0, None, &sparse.indices.component_type, sparse.count.0)
                 .map_err(fail)?;
         let (bytes, _) = buffers.view(root, sparse.values.buffer_view)?;
-        let values = Fields::new(bytes, sparse.values.byte_offset.0, None, size, sparse.count.0).map_err(fail)?;
-        for (place, field) in places.into_iter().zip(values.iter()) {
-            let count = points.len();
-            *points.get_mut(place as usize).ok_or_else(|| fail(missing(place as usize, count, "values")))? =
+        let fields = Fields::new(bytes, sparse.values.byte_offset.0, None, size, sparse.count.0).map_err(fail)?;
+        for (place, field) in places.into_iter().zip(fields.iter()) {
+            let count = values.len();
+            *values.get_mut(place as usize).ok_or_else(|| fail(missing(place as usize, count, "values")))? =
                 decode(field);
         }
     }
-    Ok(points)
+    Ok(values)
 }
 
 /// The indices behind accessor `index`.

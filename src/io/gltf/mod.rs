@@ -3,6 +3,7 @@
 
 mod accessor;
 mod buffers;
+mod material;
 mod scene;
 mod write;
 

@@ -1,6 +1,7 @@
 //! The node tree: transforms are applied, every node with a mesh becomes a part.
 
-use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DMat4, DQuat, DVec3};
 use gltf_json::mesh::{Mesh, Mode, Primitive, Semantic};
@@ -12,6 +13,7 @@ use super::super::error::{ReadError, ReadProblem};
 use super::super::soup::{Expansion, Soup, counted, too_many_vertices};
 use super::accessor;
 use super::buffers::{Buffers, missing};
+use super::material::Tint;
 
 /// The soup of the default scene, or of the first, or of every node, or of every mesh: whichever
 /// is there.
@@ -23,6 +25,7 @@ pub(super) fn read(root: &Root, buffers: &Buffers<'_>, allowance: &mut Expansion
         soup: Soup::new(),
         used: vec![false; root.meshes.len()],
         other_primitives: 0,
+        textured: BTreeSet::new(),
         posed: 0,
     };
     match tops(root)? {
@@ -65,7 +68,18 @@ struct Reader<'a, 'b> {
     soup: Soup,
     used: Vec<bool>,
     other_primitives: usize,
+    /// Materials with a texture.
+    textured: BTreeSet<usize>,
     posed: usize,
+}
+
+/// What primitives of one mesh share, by accessor.
+#[derive(Default)]
+struct Shared {
+    /// The first vertex and how many.
+    vertices: BTreeMap<usize, (u32, usize)>,
+    /// Linear light and alpha.
+    colours: BTreeMap<usize, Vec<[f32; 4]>>,
 }
 
 impl Reader<'_, '_> {
@@ -102,7 +116,7 @@ impl Reader<'_, '_> {
         let name = if name.is_empty() { mesh.name.as_deref().unwrap_or_default() } else { name };
         self.soup.begin_part(name.as_bytes());
         // Primitives of a mesh often share one accessor: its vertices are taken once.
-        let mut known = BTreeMap::new();
+        let mut shared = Shared::default();
         for primitive in &mesh.primitives {
             let Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) = primitive.mode
             else {
@@ -110,7 +124,7 @@ impl Reader<'_, '_> {
                 continue;
             };
             self.posed += usize::from(primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()));
-            self.primitive(primitive, mode, place, &mut known).map_err(|e| match e.place {
+            self.primitive(primitive, mode, place, &mut shared).map_err(|e| match e.place {
                 Some(_) => e,
                 None => fail(*e.problem),
             })?;
@@ -123,17 +137,17 @@ impl Reader<'_, '_> {
         primitive: &Primitive,
         mode: Mode,
         place: &DMat4,
-        known: &mut BTreeMap<usize, (u32, usize)>,
+        shared: &mut Shared,
     ) -> Result<(), ReadError> {
         let Some(&positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
             self.other_primitives += 1;
             return Ok(());
         };
-        let (first, count) = match known.get(&positions.value()) {
+        let (first, count) = match shared.vertices.get(&positions.value()) {
             Some(&vertices) => vertices,
             None => {
                 let vertices = self.vertices(positions, place)?;
-                known.insert(positions.value(), vertices);
+                shared.vertices.insert(positions.value(), vertices);
                 vertices
             }
         };
@@ -160,6 +174,35 @@ impl Reader<'_, '_> {
         if place.determinant() < 0.0 {
             self.soup.triangles[start..].iter_mut().for_each(|t| t.swap(1, 2));
         }
+        self.paint(primitive, start, first, shared)
+    }
+
+    /// Colours the triangles from number `start` on, whose vertices are counted from `first`.
+    fn paint(&mut self, primitive: &Primitive, start: usize, first: u32, shared: &mut Shared) -> Result<(), ReadError> {
+        let tint = Tint::of(self.root, primitive)?;
+        self.textured.extend(tint.textured);
+        let (soup, odd) = (&mut self.soup, &mut 0);
+        let triangles = &soup.triangles[start..];
+        let Some(&index) = primitive.attributes.get(&Checked::Valid(Semantic::Colors(0))) else {
+            if !tint.is_plain() {
+                let colour = tint.applied_to([1.0; 4], odd);
+                soup.colours.paint(start, triangles.iter().map(|_| [colour; 3]));
+                soup.colours.odd += *odd;
+            }
+            return Ok(());
+        };
+        let colours = match shared.colours.entry(index.value()) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => new.insert(accessor::colours(self.root, self.buffers, index, self.allowance)?),
+        };
+        if let Some(v) = triangles.iter().flatten().map(|v| v - first).find(|&v| v as usize >= colours.len()) {
+            let expected = format!("a colour for vertex {v}");
+            let problem = ReadProblem::truncated(expected, format!("there are {}", counted(colours.len(), "colour")));
+            return Err(ReadError::item(format!("accessors[{}]", index.value()), problem));
+        }
+        let corners = |t: &[u32; 3]| t.map(|v| tint.applied_to(colours[(v - first) as usize], odd));
+        soup.colours.paint(start, triangles.iter().map(corners));
+        soup.colours.odd += *odd;
         Ok(())
     }
 
@@ -189,6 +232,7 @@ impl Reader<'_, '_> {
             }
         };
         warn(self.other_primitives, "primitive", "without triangles left out");
+        warn(self.textured.len(), "texture", "left out; colours of vertices and materials are read");
         warn(self.posed, "mesh", "with a skin or morph targets read in the pose they are stored in");
         warn(self.used.iter().filter(|used| !**used).count(), "mesh", "not part of the scene left out");
         let instanced = self.root.extensions_used.iter().any(|name| name == "EXT_mesh_gpu_instancing");

@@ -1,5 +1,6 @@
 //! PLY: a header that declares elements and their properties, then the data, as text or binary.
 
+mod colour;
 mod header;
 mod rows;
 mod vertex_map;
@@ -7,6 +8,7 @@ mod write;
 
 use glam::DVec3;
 
+use self::colour::Channels;
 use self::header::{Element, Header};
 use self::rows::Rows;
 use super::error::{ReadError, ReadProblem};
@@ -57,13 +59,17 @@ fn read_vertices(element: &Element, rows: &mut Rows<'_>, soup: &mut Soup) -> Res
         return Err(too_many_vertices());
     }
     soup.positions.reserve_exact(element.count);
-    for _ in 0..element.count {
+    let channels = Channels::of(element, &mut soup.colours.vertices, &mut soup.warnings);
+    for vertex in 0..element.count {
         rows.next(element)?;
         let p = DVec3::from(axes.map(|axis| rows.scalar(axis)));
         if !p.is_finite() {
             return Err(rows.fail(ReadProblem::NotFinite { found: p.to_string() }));
         }
         soup.positions.push(p);
+        if let Some(channels) = &channels {
+            soup.colours.vertices.put(vertex..vertex + 1, channels.levels(rows));
+        }
     }
     Ok(())
 }
@@ -96,9 +102,11 @@ impl Faces {
         if let Self::Polygons(_) = self {
             soup.triangles.reserve(element.count);
         }
+        let channels = Channels::of(element, &mut soup.colours.faces, &mut soup.warnings);
         let mut corners = Vec::new();
         for _ in 0..element.count {
             rows.next(element)?;
+            let first = soup.triangles.len();
             let (Self::Polygons(list) | Self::Strips(list)) = self;
             let values = rows.list(list);
             match self {
@@ -108,6 +116,9 @@ impl Faces {
                     .try_for_each(|strip| indices(strip, count, &mut corners).map(|()| soup.strip(&corners))),
             }
             .map_err(|problem| rows.fail(problem))?;
+            if let Some(channels) = &channels {
+                soup.colours.faces.put(first..soup.triangles.len(), channels.levels(rows));
+            }
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::super::error::WriteError;
 use super::super::{Format, check};
-use super::write::{header_with, is_single, write_binary_rows};
+use super::write::{More, Row, channel_lines, header_with, is_single, write_binary_rows};
 use crate::mesh::TriMesh;
 
 /// What [`encode_vertex_map`] writes beside the mesh. The lists go by vertex; where one is too short, 0 is written.
@@ -25,13 +25,17 @@ pub struct VertexMap<'a> {
 pub fn encode_vertex_map(mesh: &TriMesh, map: &VertexMap<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
     check(mesh, Format::Ply)?;
     let single = is_single(mesh);
-    let comments: String =
-        map.comments.iter().map(|text| format!("comment {}\n", text.replace(['\n', '\r'], " "))).collect();
-    let properties = "property float quality\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
-    out.write_all(header_with(mesh, "binary_little_endian", single, &comments, properties).as_bytes())?;
-    let extra = |vertex: usize, row: &mut Vec<u8>| {
-        row.extend_from_slice(&map.quality.get(vertex).copied().unwrap_or(0.0).to_le_bytes());
-        row.extend_from_slice(&map.colours.get(vertex).copied().unwrap_or_default());
+    let more = More {
+        comments: map.comments.iter().map(|text| format!("comment {}\n", text.replace(['\n', '\r'], " "))).collect(),
+        of_vertex: format!("property float quality\n{}", channel_lines(3)),
+        of_face: String::new(),
+    };
+    out.write_all(header_with(mesh, "binary_little_endian", single, &more).as_bytes())?;
+    let extra = |row: Row, bytes: &mut Vec<u8>| {
+        if let Row::Vertex(vertex) = row {
+            bytes.extend_from_slice(&map.quality.get(vertex).copied().unwrap_or(0.0).to_le_bytes());
+            bytes.extend_from_slice(&map.colours.get(vertex).copied().unwrap_or_default());
+        }
     };
     write_binary_rows(mesh, single, extra, out)
 }

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{DAffine3, DVec3};
 use quick_xml::events::{BytesStart, Event};
 
+use super::super::colour::Rgba;
 use super::super::error::ReadProblem;
 use super::super::text::{Words, integer, number, quoted};
 use super::package::{Xml, XmlError};
@@ -17,6 +18,8 @@ pub(super) struct Model {
     pub(super) name: String,
     pub(super) unit: Unit,
     pub(super) objects: BTreeMap<u32, Object>,
+    /// Groups of colours and of base materials: the colours of their entries.
+    pub(super) groups: BTreeMap<u32, Vec<Rgba>>,
     /// What the build places.
     pub(super) items: Vec<Placed>,
 }
@@ -38,7 +41,18 @@ pub(super) struct Object {
     pub(super) vertices: Vec<DVec3>,
     /// Indices into `vertices`, in range.
     pub(super) triangles: Vec<[u32; 3]>,
+    /// What the triangles have of their own; triangles after the last have nothing.
+    pub(super) properties: Vec<Option<Property>>,
+    /// What the triangles that have nothing of their own get.
+    pub(super) default: Option<Property>,
     pub(super) components: Vec<Placed>,
+}
+
+/// Entries of a group, for the three corners of a triangle. The group may be of another kind than colours, or absent.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Property {
+    pub(super) group: u32,
+    pub(super) entries: [u32; 3],
 }
 
 /// An object under a transform.
@@ -52,9 +66,15 @@ pub(super) struct Placed {
 
 /// Reads the model file `name`.
 pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
-    let mut model =
-        Model { name: name.to_owned(), unit: Unit::Millimetre, objects: BTreeMap::new(), items: Vec::new() };
+    let mut model = Model {
+        name: name.to_owned(),
+        unit: Unit::Millimetre,
+        objects: BTreeMap::new(),
+        groups: BTreeMap::new(),
+        items: Vec::new(),
+    };
     let mut object: Option<(u32, Object)> = None;
+    let mut group: Option<(u32, Vec<Rgba>)> = None;
     let mut in_mesh = false;
     let mut whole = false;
     loop {
@@ -63,15 +83,25 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
             Event::Eof => return Err(ReadProblem::truncated("`</model>`", "the file ends").into()),
             Event::Start(e) => match (e.local_name().as_ref(), &mut object) {
                 (b"model", _) => model.unit = unit(&e)?,
-                (b"object", _) => object = Some((id(&e, b"id")?, Object { name: name_of(&e), ..Object::default() })),
+                (b"object", _) => object = Some((id(&e, b"id")?, new_object(&e)?)),
+                (b"basematerials" | b"colorgroup", _) => group = Some((id(&e, b"id")?, Vec::new())),
                 (b"mesh", Some(_)) => in_mesh = true,
                 (b"vertex", Some((_, object))) if in_mesh => object.vertices.push(vertex(&e)?),
                 (b"triangle", Some((_, object))) if in_mesh => {
                     let triangle = triangle(&e, object.vertices.len())?;
+                    if let Some(property) = property(&e, object.default)? {
+                        object.properties.resize(object.triangles.len(), None);
+                        object.properties.push(Some(property));
+                    }
                     object.triangles.push(triangle);
                 }
                 (b"component", Some((_, object))) => object.components.push(placed(&e)?),
                 (b"item", None) => model.items.push(placed(&e)?),
+                (kind @ (b"base" | b"color"), _) => {
+                    if let Some((_, colours)) = &mut group {
+                        colours.push(colour(&e, if kind == b"base" { b"displaycolor" } else { b"color" })?);
+                    }
+                }
                 _ => {}
             },
             Event::End(e) => match e.local_name().as_ref() {
@@ -81,6 +111,7 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
                         model.objects.insert(id, object);
                     }
                 }
+                b"basematerials" | b"colorgroup" => model.groups.extend(group.take()),
                 b"model" => whole = true,
                 _ => {}
             },
@@ -125,9 +156,55 @@ fn unit(element: &BytesStart<'_>) -> Result<Unit, ReadProblem> {
 }
 
 fn id(element: &BytesStart<'_>, name: &[u8]) -> Result<u32, ReadProblem> {
+    whole(&needed(element, name)?, "the number of an object")
+}
+
+fn whole(value: &[u8], expected: &str) -> Result<u32, ReadProblem> {
+    let found = integer(value.trim_ascii()).and_then(|number| u32::try_from(number).ok());
+    found.ok_or_else(|| ReadProblem::syntax(expected, quoted(value)))
+}
+
+fn new_object(element: &BytesStart<'_>) -> Result<Object, ReadProblem> {
+    let number = |name| attribute(element, name).map(|value| whole(&value, "the number of a property")).transpose();
+    let entry = number(b"pindex")?.unwrap_or_default();
+    let default = number(b"pid")?.map(|group| Property { group, entries: [entry; 3] });
+    Ok(Object { name: name_of(element), default, ..Object::default() })
+}
+
+/// What a triangle has of its own: an entry for each corner, or one for all, of a group that the object names if the triangle
+/// does not.
+fn property(element: &BytesStart<'_>, default: Option<Property>) -> Result<Option<Property>, ReadProblem> {
+    let mut group = default.map(|property| property.group);
+    let mut entries = [None; 3];
+    let mut attributes = element.attributes();
+    for attribute in attributes.with_checks(false).flatten() {
+        let number = || whole(&attribute.value, "the number of a property");
+        match attribute.key.local_name().as_ref() {
+            b"pid" => group = Some(number()?),
+            b"p1" => entries[0] = Some(number()?),
+            b"p2" => entries[1] = Some(number()?),
+            b"p3" => entries[2] = Some(number()?),
+            _ => {}
+        }
+    }
+    Ok(match (group, entries) {
+        (Some(group), [Some(a), Some(b), Some(c)]) => Some(Property { group, entries: [a, b, c] }),
+        (Some(group), [Some(a), ..]) => Some(Property { group, entries: [a; 3] }),
+        _ => None,
+    })
+}
+
+/// `#RRGGBB` or `#RRGGBBAA`.
+fn colour(element: &BytesStart<'_>, name: &[u8]) -> Result<Rgba, ReadProblem> {
     let value = needed(element, name)?;
-    let id = integer(value.trim_ascii()).and_then(|id| u32::try_from(id).ok());
-    id.ok_or_else(|| ReadProblem::syntax("the number of an object", quoted(&value)))
+    let fail = || ReadProblem::syntax("a colour such as `#FF8000` or `#FF8000FF`", quoted(&value));
+    let digits = value.trim_ascii().strip_prefix(b"#").filter(|d| matches!(d.len(), 6 | 8)).ok_or_else(fail)?;
+    let mut rgba = [255; 4];
+    for (channel, pair) in rgba.iter_mut().zip(digits.chunks_exact(2)) {
+        let [high, low] = [pair[0], pair[1]].map(|digit| char::from(digit).to_digit(16));
+        *channel = (16 * high.ok_or_else(fail)? + low.ok_or_else(fail)?) as u8;
+    }
+    Ok(rgba)
 }
 
 fn coordinate(value: &[u8]) -> Result<f64, ReadProblem> {

@@ -5,6 +5,9 @@ use std::io::{Cursor, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
+use rustc_hash::FxHashMap;
+
+use super::super::colour::{Colours, Rgba};
 use super::super::error::WriteError;
 use super::super::text::TextOut;
 use crate::io::Unit;
@@ -19,32 +22,100 @@ const RELATIONSHIPS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 "#;
 
 /// Writes a package. Without a unit the model states none, which means millimetres.
-pub(in crate::io) fn write(mesh: &TriMesh, unit: Option<Unit>, out: &mut dyn Write) -> Result<(), WriteError> {
+pub(in crate::io) fn write(
+    mesh: &TriMesh,
+    colours: Option<&Colours>,
+    unit: Option<Unit>,
+    out: &mut dyn Write,
+) -> Result<(), WriteError> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     // A fixed date: the same mesh gives the same bytes.
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
         .last_modified_time(DateTime::default())
-        .large_file(3 * mesh.positions.len() + 2 * mesh.triangles.len() > (u32::MAX / 64) as usize);
+        .large_file(3 * mesh.positions.len() + 4 * mesh.triangles.len() > (u32::MAX / 64) as usize);
     for (name, text) in [("[Content_Types].xml", TYPES), ("_rels/.rels", RELATIONSHIPS)] {
         zip.start_file(name, options).map_err(std::io::Error::from)?;
         zip.write_all(text.as_bytes())?;
     }
     zip.start_file("3D/3dmodel.model", options).map_err(std::io::Error::from)?;
-    write_model(mesh, unit, &mut zip)?;
+    write_model(mesh, colours, unit, &mut zip)?;
     let bytes = zip.finish().map_err(std::io::Error::from)?.into_inner();
     Ok(out.write_all(&bytes)?)
 }
 
-fn write_model(mesh: &TriMesh, unit: Option<Unit>, out: &mut dyn Write) -> std::io::Result<()> {
+/// The entries of the one group of colours: each colour once, in order of first use.
+struct Palette<'a> {
+    mesh: &'a TriMesh,
+    colours: &'a Colours,
+    entries: Vec<Rgba>,
+    numbers: FxHashMap<Rgba, u32>,
+}
+
+impl<'a> Palette<'a> {
+    fn new(mesh: &'a TriMesh, colours: &'a Colours) -> Self {
+        let mut palette = Self { mesh, colours, entries: Vec::new(), numbers: FxHashMap::default() };
+        for colour in (0..mesh.triangles.len()).flat_map(|triangle| colours.corners(mesh, triangle)) {
+            // There are at most 2³² different colours.
+            palette.numbers.entry(colour).or_insert_with(|| {
+                palette.entries.push(colour);
+                (palette.entries.len() - 1) as u32
+            });
+        }
+        palette
+    }
+
+    fn write_group(&self, text: &mut TextOut<'_>) -> std::io::Result<()> {
+        text.text("<m:colorgroup id=\"2\">\n");
+        for &[red, green, blue, alpha] in &self.entries {
+            let alpha = if alpha == 255 { String::new() } else { format!("{alpha:02X}") };
+            text.text(&format!("<m:color color=\"#{red:02X}{green:02X}{blue:02X}{alpha}\"/>\n"));
+            text.pass_on()?;
+        }
+        text.text("</m:colorgroup>\n");
+        Ok(())
+    }
+
+    /// The attributes of a triangle: its group, then one entry, or three where the corners differ.
+    fn write_entries(&self, triangle: usize, text: &mut TextOut<'_>) {
+        let corners = self.colours.corners(self.mesh, triangle);
+        let same = corners.iter().all(|colour| *colour == corners[0]);
+        text.text("\" pid=\"2");
+        for (start, colour) in
+            ["\" p1=\"", "\" p2=\"", "\" p3=\""].into_iter().zip(corners).take(if same { 1 } else { 3 })
+        {
+            text.text(start);
+            text.integer(u64::from(self.numbers.get(&colour).copied().unwrap_or_default()));
+        }
+    }
+}
+
+fn write_model(
+    mesh: &TriMesh,
+    colours: Option<&Colours>,
+    unit: Option<Unit>,
+    out: &mut dyn Write,
+) -> std::io::Result<()> {
+    let palette = colours.map(|colours| Palette::new(mesh, colours));
     let mut text = TextOut::new(out);
     text.text("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model");
     if let Some(unit) = unit {
         text.text(&format!(" unit=\"{}\"", unit.word()));
     }
-    text.text(" xml:lang=\"en-US\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n");
+    text.text(" xml:lang=\"en-US\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"");
+    if palette.is_some() {
+        text.text(" xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\"");
+    }
+    text.text(">\n");
     text.text("<metadata name=\"Application\">meshwright</metadata>\n");
-    text.text("<resources><object id=\"1\" type=\"model\"><mesh>\n<vertices>\n");
+    text.text("<resources>");
+    if let Some(palette) = &palette {
+        palette.write_group(&mut text)?;
+    }
+    text.text("<object id=\"1\" type=\"model\"");
+    // Where triangles have properties the object shall have one too.
+    text.text(if palette.is_some() { " pid=\"2\" pindex=\"0\"" } else { "" });
+    text.text("><mesh>\n<vertices>\n");
     for p in &mesh.positions {
         for (start, x) in ["<vertex x=\"", "\" y=\"", "\" z=\""].into_iter().zip(p.to_array()) {
             text.text(start);
@@ -54,10 +125,13 @@ fn write_model(mesh: &TriMesh, unit: Option<Unit>, out: &mut dyn Write) -> std::
         text.pass_on()?;
     }
     text.text("</vertices>\n<triangles>\n");
-    for t in &mesh.triangles {
+    for (triangle, t) in mesh.triangles.iter().enumerate() {
         for (start, v) in ["<triangle v1=\"", "\" v2=\"", "\" v3=\""].into_iter().zip(t) {
             text.text(start);
             text.integer(u64::from(*v));
+        }
+        if let Some(palette) = &palette {
+            palette.write_entries(triangle, &mut text);
         }
         text.text("\"/>\n");
         text.pass_on()?;
