@@ -8,7 +8,7 @@ use super::facets::{Facets, Side, Sides};
 use crate::mesh::Plane;
 
 /// Planes that turn by less (cosine, 3°) are no crease.
-const FLAT: f64 = 0.9986;
+pub(super) const FLAT: f64 = 0.9986;
 
 /// Planes that turn by less (cosine, 20°) belong to one smooth piece.
 pub(super) const SMOOTH: f64 = 0.94;

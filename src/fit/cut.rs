@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Surface;
-use super::crease::{Crease, Place, nearest};
+use super::crease::{Crease, FLAT, Place, nearest};
 use super::facets::{Facets, Sides};
 use super::snap::shape;
 
@@ -103,6 +103,13 @@ fn raise_corners(cut: &mut Cut, facets: &Facets<'_>, h: f64, plain: &FxHashSet<u
 /// The corner in which the creases through three points meet, if it is another point.
 fn corner(facets: &Facets<'_>, h: f64, three: [Place; 3]) -> Option<Place> {
     let mut sides = Sides::of(three.iter().flat_map(|p| p.sides.iter()));
+    let normal = |s| facets.plane(s).normal;
+    let distinct = sides.iter().enumerate().filter(|&(k, s)| {
+        sides.iter().take(k).all(|o| normal(o).dot(normal(s)) < FLAT)
+    });
+    if distinct.count() < 3 {
+        return None;
+    }
     let middle = three.iter().map(|p| p.at).sum::<DVec3>() / 3.0;
     let mut at = nearest(sides.iter().map(|s| facets.plane(s)), middle)?;
     let mut beyond = 0.0f64;

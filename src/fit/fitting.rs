@@ -7,6 +7,9 @@ use super::crease::{Crease, SMOOTH, crease};
 use super::facets::Facets;
 use super::{Around, FitOptions, FitReport, Surface, rounded, snap};
 
+/// A sharp crease nearer to the surface than this, h, is left out.
+const SHARP_SAG: f64 = 0.002;
+
 /// The state of a fit.
 pub(super) struct Fitting<'a> {
     home: &'a Surface,
@@ -62,19 +65,21 @@ impl<'a> Fitting<'a> {
         }
     }
 
-    /// The triangles, given what they were at home, that must be judged.
+    /// The triangles, given what they were at home, that are other than at home.
     pub(super) fn changed(&self, origin: &[u32]) -> Vec<u32> {
-        let all = 0..origin.len() as u32;
+        let home = &self.home.mesh.triangles;
+        let mut parts = vec![0u8; home.len()];
+        origin.iter().for_each(|&t| parts[t as usize] += 1);
+        let moved = |id: u32| home[id as usize].iter().any(|&v| self.moved[v as usize]);
+        let cut_or_moved = |t: &u32| parts[origin[*t as usize] as usize] > 1 || moved(origin[*t as usize]);
+        (0..origin.len() as u32).into_par_iter().filter(cut_or_moved).collect()
+    }
+
+    /// Those of them that have not been judged yet.
+    pub(super) fn to_judge(&self, origin: &[u32]) -> Vec<u32> {
         match &self.dirty {
-            Some(dirty) => all.filter(|&t| dirty.contains(&origin[t as usize])).collect(),
-            None => {
-                let home = &self.home.mesh.triangles;
-                let mut parts = vec![0u8; home.len()];
-                origin.iter().for_each(|&t| parts[t as usize] += 1);
-                let moved = |id: u32| home[id as usize].iter().any(|&v| self.moved[v as usize]);
-                let cut_or_moved = |t: u32| parts[origin[t as usize] as usize] > 1 || moved(origin[t as usize]);
-                all.into_par_iter().filter(|&t| cut_or_moved(t)).collect()
-            }
+            Some(dirty) => (0..origin.len() as u32).filter(|&t| dirty.contains(&origin[t as usize])).collect(),
+            None => self.changed(origin),
         }
     }
 
@@ -173,8 +178,9 @@ fn creases(
 ) -> Vec<([u32; 2], Crease)> {
     let found = edges.filter_map(|edge| {
         let found = crease(facets, h, &surface.place(edge[0]), &surface.place(edge[1]))?;
-        let wanted = found.sag > options.sag * h
-            && (found.on_source || (found.sag < h && found.cosine < SMOOTH));
+        let sharp = found.cosine < SMOOTH;
+        let wanted = found.sag > if sharp { SHARP_SAG } else { options.sag } * h
+            && (found.on_source || (found.sag < h && sharp));
         wanted.then_some((edge, found))
     });
     let mut found: Vec<_> = found.collect();

@@ -8,6 +8,7 @@ mod crease;
 mod cut;
 mod facets;
 mod fitting;
+mod mend;
 mod quadric;
 mod safeguard;
 mod simplify;
@@ -36,6 +37,11 @@ impl Surface {
         self.mesh.positions[vertex as usize]
     }
 
+    fn put(&mut self, vertex: u32, place: Place) {
+        self.mesh.positions[vertex as usize] = place.at;
+        self.sides[vertex as usize] = place.sides;
+    }
+
     fn place(&self, vertex: u32) -> Place {
         Place { at: self.at(vertex), sides: self.sides[vertex as usize] }
     }
@@ -48,18 +54,22 @@ impl Surface {
         any || a.iter().any(|p| b.iter().any(|q| near(p, q) && c.iter().any(|r| near(q, r) && near(p, r))))
     }
 
-    /// The facet, of those that a corner of a triangle lies on, whose smooth piece all corners share and
-    /// that agrees best with the normal.
-    fn common_side(&self, facets: &Facets<'_>, t: u32) -> Option<Side> {
-        let [a, b, c] = self.mesh.triangles[t as usize].map(|v| self.sides[v as usize]);
-        let (normal, _) = snap::shape(self.mesh.corners(t as usize));
-        let facing = |side: &Side| facets.plane(*side).normal.dot(normal);
-        let has = |sides: &Sides, p: Side| {
-            sides.iter().any(|q| p == q || facets.plane(p).normal.dot(facets.plane(q).normal) > SMOOTH)
-        };
-        let all = a.iter().chain(b.iter()).chain(c.iter());
-        all.filter(|&p| has(&a, p) && has(&b, p) && has(&c, p)).max_by(|p, q| facing(p).total_cmp(&facing(q)))
+    /// The corners of a triangle.
+    fn places(&self, t: u32) -> [Place; 3] {
+        self.mesh.triangles[t as usize].map(|v| self.place(v))
     }
+}
+
+/// How well a triangle agrees with its facets: the cosine between its normal and that of the facet,
+/// of those its corners lie on, whose smooth piece all corners share and that agrees best; `None` where there
+/// is no such piece.
+fn agreement(facets: &Facets<'_>, corners: &[Place; 3]) -> Option<f64> {
+    let normal = snap::shape(corners.map(|c| c.at)).0.normalize_or_zero();
+    let has = |corner: &Place, p: Side| {
+        corner.sides.iter().any(|q| p == q || facets.plane(p).normal.dot(facets.plane(q).normal) > SMOOTH)
+    };
+    let all = corners.iter().flat_map(|c| c.sides.iter());
+    all.filter(|&p| corners.iter().all(|c| has(c, p))).map(|p| facets.plane(p).normal.dot(normal)).max_by(f64::total_cmp)
 }
 
 /// A point whose coordinates any format holds unchanged.
@@ -135,8 +145,16 @@ pub fn sharpen(
     let mut fitting = fitting::Fitting::new(home, facets, h, options);
     for _ in 0..MOST_ROUNDS {
         progress.check()?;
-        let cut = cut::cut(&fitting.surface, facets, h, &fitting.points, &fitting.plain);
-        let changed = fitting.changed(&cut.origin);
+        let mut cut = cut::cut(&fitting.surface, facets, h, &fitting.points, &fitting.plain);
+        let away = fitting.changed(&cut.origin);
+        let mended = mend::mend(&mut cut, facets, h, &away);
+        let mut changed = fitting.to_judge(&cut.origin);
+        if std::env::var("MW_DEBUG").is_ok() {
+            eprintln!("mended {}", mended.len());
+        }
+        changed.extend(mended);
+        changed.sort_unstable();
+        changed.dedup();
         let before = |t: u32| snap::shape(home.mesh.corners(cut.origin[t as usize] as usize)).0;
         let mut bad = safeguard::misshapen(&cut.surface, facets, h, &changed, before);
         bad.extend(safeguard::meeting(&cut.surface.mesh, h, &changed, progress)?);
@@ -145,6 +163,14 @@ pub fn sharpen(
         }
         if bad.is_empty() {
             return Ok((cut.surface, fitting.report()));
+        }
+        if std::env::var("MW_DEBUG").is_ok_and(|v| v == "2") && bad.len() < 2000 {
+            for &t in &bad {
+                let p = cut.surface.places(t);
+                let c = p.map(|p| ((p.at - home.mesh.bounds().unwrap().min) / h * 1000.0).round() / 1000.0);
+                let n = p.map(|p| p.sides.iter().map(|s| s.facet()).collect::<Vec<_>>());
+                eprintln!("BAD {t} of {} {:?} {:?} {:?} facets {n:?} centred {} height {:.5} agrees {:?} ids {:?}", cut.origin[t as usize], c[0].to_array(), c[1].to_array(), c[2].to_array(), cut.centred.contains(&cut.origin[t as usize]), snap::shape(p.map(|p| p.at)).1 / h, agreement(facets, &p), cut.surface.mesh.triangles[t as usize]);
+            }
         }
         let mut bad: Vec<u32> = bad.into_iter().map(|t| cut.origin[t as usize]).collect();
         bad.sort_unstable();

@@ -4,7 +4,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-use super::Surface;
+use super::{Surface, agreement};
 use super::facets::Facets;
 use super::snap::shape;
 use crate::mesh::{TriMesh, intersecting_triangles};
@@ -24,15 +24,10 @@ pub(super) fn misshapen(
     before: impl Fn(u32) -> DVec3 + Sync,
 ) -> Vec<u32> {
     let wrong = |&t: &u32| {
-        let corners = surface.mesh.corners(t as usize);
-        let (normal, height) = shape(corners);
-        if height.is_nan() || height < LEAST_HEIGHT * h {
-            return true;
-        }
-        match surface.common_side(facets, t) {
-            Some(side) => normal.dot(facets.plane(side).normal) <= 0.0,
-            None => normal.dot(before(t)) <= 0.0,
-        }
+        let corners = surface.places(t);
+        let (normal, height) = shape(corners.map(|c| c.at));
+        let low = height.is_nan() || height < LEAST_HEIGHT * h;
+        low || agreement(facets, &corners).unwrap_or_else(|| normal.dot(before(t))) <= 0.0
     };
     changed.par_iter().copied().filter(wrong).collect()
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Surface;
+use super::{Surface, agreement};
 use super::crease::{Crease, Place, SMOOTH, crease, nearest};
 use super::facets::{Facets, Sides};
 
@@ -15,9 +15,6 @@ const NEAR_CORNER: f64 = 0.35;
 
 /// The least height that a triangle may get by it, h, unless it was lower before.
 const LEAST_HEIGHT: f64 = 0.01;
-
-/// By how much a triangle may turn (cosine).
-const MOST_TURN: f64 = 0.3;
 
 /// Moves vertices. `edges` are all edges between different smooth pieces,
 /// `around` the triangles around each vertex.
@@ -31,81 +28,90 @@ pub(super) fn snap(
     let mut ends: Vec<[u32; 2]> = edges.iter().flat_map(|&[a, b]| [[a, b], [b, a]]).collect();
     ends.par_sort_unstable();
     let fans: Vec<&[[u32; 2]]> = ends.chunk_by(|a, b| a[0] == b[0]).collect();
-    let mut wishes: Vec<(Place, &[[u32; 2]])> = fans
+    let mut wishes: Vec<(Vec<Place>, &[[u32; 2]])> = fans
         .par_iter()
-        .filter_map(|fan| wish(surface, facets, h, fan).map(|place| (place, *fan)))
+        .map(|fan| (wish(surface, facets, h, fan), *fan))
+        .filter(|(places, _)| !places.is_empty())
         .collect();
-    let way = |w: &(Place, &[[u32; 2]])| w.0.at.distance(surface.at(w.1[0][0]));
+    let way = |w: &(Vec<Place>, &[[u32; 2]])| w.0[0].at.distance(surface.at(w.1[0][0]));
     wishes.par_sort_by(|a, b| way(a).total_cmp(&way(b)).then(a.1[0].cmp(&b.1[0])));
     let mut has_moved = vec![false; surface.mesh.positions.len()];
     let mut moved = Vec::new();
-    for (mut place, fan) in wishes {
+    for (mut places, fan) in wishes {
         let vertex = fan[0][0];
         if fan.iter().any(|e| has_moved[e[1] as usize]) {
-            let Some(now) = wish(surface, facets, h, fan) else { continue };
-            place = now;
+            places = wish(surface, facets, h, fan);
         }
-        let old = surface.at(vertex);
-        surface.mesh.positions[vertex as usize] = super::rounded(place.at);
-        let kept = around.of(vertex).iter().all(|&t| keeps_shape(surface, t, vertex, old, h));
-        if kept {
-            surface.sides[vertex as usize] = place.sides;
+        let old = surface.place(vertex);
+        let fits = |surface: &Surface| around.of(vertex).iter().all(|&t| parts_fit(surface, facets, h, t));
+        let taken = places.into_iter().any(|place| {
+            surface.put(vertex, Place { at: super::rounded(place.at), ..place });
+            fits(surface)
+        });
+        if taken {
             moved.push(vertex);
             has_moved[vertex as usize] = true;
         } else {
-            surface.mesh.positions[vertex as usize] = old;
+            surface.put(vertex, old);
         }
     }
     moved
 }
 
-/// Where a vertex should go, given the edges that leave its smooth piece.
-fn wish(surface: &Surface, facets: &Facets<'_>, h: f64, fan: &[[u32; 2]]) -> Option<Place> {
-    let vertex = fan[0][0];
-    let own = surface.place(vertex);
-    let sharp = |c: &Crease| c.cosine < SMOOTH;
-    let mut nearest_crease: Option<(f64, Crease)> = None;
+/// Where a vertex may go, the best place first, given the edges that leave its smooth piece: into a
+/// corner, straight onto the nearest crease, or along one of the edges onto it.
+fn wish(surface: &Surface, facets: &Facets<'_>, h: f64, fan: &[[u32; 2]]) -> Vec<Place> {
+    let own = surface.place(fan[0][0]);
+    let foot = |sides: &Sides| nearest(sides.iter().map(|s| facets.plane(s)), own.at);
     let mut met = Sides::default();
+    let mut places: Vec<(f64, Place)> = Vec::new();
     for &[_, other] in fan {
-        let Some(found) = crease(facets, h, &own, &surface.place(other)).filter(sharp) else { continue };
-        let foot = nearest(found.place.sides.iter().map(|s| facets.plane(s)), own.at)?;
-        let distance = foot.distance(own.at);
-        if distance < NEAR_CORNER * h {
+        let found = crease(facets, h, &own, &surface.place(other)).filter(|c| c.cosine < SMOOTH);
+        let Some(Crease { place: Place { at, sides }, .. }) = found else { continue };
+        let Some(foot) = foot(&sides) else { continue };
+        let straight = foot.distance(own.at);
+        if straight < NEAR_CORNER * h {
             let normal = |s| facets.plane(s).normal;
-            for side in found.place.sides.iter() {
+            for side in sides.iter() {
                 if met.iter().all(|m| normal(m).dot(normal(side)) < SMOOTH) {
                     met.add(side);
                 }
             }
         }
-        if nearest_crease.as_ref().is_none_or(|n| distance < n.0) {
-            nearest_crease = Some((distance, found));
+        if straight < NEAR * h {
+            places.push((straight, Place { at: foot, sides }));
+            places.push((straight.max(at.distance(own.at)) + NEAR * h, Place { at, sides }));
         }
     }
-    if met.iter().count() > 2 {
-        let corner = nearest(met.iter().map(|s| facets.plane(s)), own.at)?;
-        let distance = corner.distance(own.at);
-        if distance < NEAR_CORNER * h {
-            return Some(Place { at: corner, sides: met });
-        }
+    if met.iter().count() > 2
+        && let Some(corner) = foot(&met).filter(|c| c.distance(own.at) < NEAR_CORNER * h)
+    {
+        places.push((-1.0, Place { at: corner, sides: met }));
     }
-    let (distance, found) = nearest_crease?;
-    let foot = nearest(found.place.sides.iter().map(|s| facets.plane(s)), own.at)?;
-    (distance < NEAR * h).then_some(Place { at: foot, sides: found.place.sides })
+    places.retain(|p| p.0 < 3.0 * NEAR * h);
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    places.into_iter().map(|p| p.1).collect()
 }
 
-/// Whether triangle `t` is still well shaped after `vertex` moved from `old`.
-fn keeps_shape(surface: &Surface, t: u32, vertex: u32, old: DVec3, h: f64) -> bool {
-    let ids = surface.mesh.triangles[t as usize];
-    let now = surface.mesh.corners(t as usize);
-    let mut before = now;
-    if let Some(k) = ids.iter().position(|&v| v == vertex) {
-        before[k] = old;
+/// Whether what a triangle will be cut into faces the way of its facets and is not too thin.
+fn parts_fit(surface: &Surface, facets: &Facets<'_>, h: f64, t: u32) -> bool {
+    let [a, b, c] = surface.places(t);
+    let fits = |corners: [Place; 3]| {
+        shape(corners.map(|c| c.at)).1 >= LEAST_HEIGHT * h && agreement(facets, &corners).is_none_or(|a| a > 0.0)
+    };
+    let on = |x: &Place, y: &Place| crease(facets, h, x, y).map(|c| c.place);
+    let cuts = [on(&a, &b), on(&b, &c), on(&c, &a)];
+    for turn in 0..3 {
+        let [a, b, c] = [[a, b, c], [b, c, a], [c, a, b]][turn];
+        match [0, 1, 2].map(|k| cuts[(turn + k) % 3]) {
+            [Some(m), None, None] => return fits([a, m, c]) && fits([m, b, c]),
+            [Some(m), Some(n), None] => {
+                return fits([m, b, n]) && (fits([a, m, n]) && fits([a, n, c]) || fits([a, m, c]) && fits([m, n, c]));
+            }
+            _ => {}
+        }
     }
-    let (turned_to, height) = shape(now);
-    let (turned_from, least) = shape(before);
-    turned_to.dot(turned_from) > MOST_TURN * turned_to.length() * turned_from.length()
-        && height >= least.min(LEAST_HEIGHT * h)
+    cuts[0].is_some() || fits([a, b, c])
 }
 
 /// Twice the area as a vector, and the smallest height.

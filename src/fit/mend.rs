@@ -1,0 +1,129 @@
+//! Triangles that cutting has turned over are mended: an edge is turned, or a vertex goes into its neighbour.
+//!
+//! A corner can lie beyond an edge of the triangle that it was put into, on the flat part next to
+//! it; the edge between them is turned. Two points of a crease can stand in the wrong order; one
+//! goes into the other.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::crease::Place;
+use super::cut::Cut;
+use super::facets::Facets;
+use super::snap::shape;
+use super::{SMOOTH, agreement};
+use crate::mesh::HalfEdges;
+
+/// The least height, h, of the triangles that it makes.
+const LEAST_HEIGHT: f64 = 1e-3;
+
+/// Mends the triangles among `changed` that face away from their facets or are too thin. Returns the
+/// triangles that it changed, by the numbers they have after.
+pub(super) fn mend(cut: &mut Cut, facets: &Facets<'_>, h: f64, changed: &[u32]) -> Vec<u32> {
+    let places = |t: &[u32; 3]| t.map(|v| cut.surface.place(v));
+    let wrong: Vec<u32> = changed
+        .par_iter()
+        .copied()
+        .filter(|&t| !fits(facets, h, &places(&cut.surface.mesh.triangles[t as usize])))
+        .collect();
+    if wrong.is_empty() {
+        return Vec::new();
+    }
+    let vertices = cut.surface.mesh.positions.len();
+    let Ok(edges) = HalfEdges::new(&cut.surface.mesh.triangles, vertices) else { return Vec::new() };
+    let mut mending = Mending { edges, cut, facets, h };
+    let mut touched: Vec<u32> = wrong.into_iter().flat_map(|t| mending.triangle(t)).collect();
+    touched.sort_unstable();
+    touched.dedup();
+    mending.finish(&touched)
+}
+
+/// Whether a triangle faces the way of its facets and is not too thin.
+fn fits(facets: &Facets<'_>, h: f64, corners: &[Place; 3]) -> bool {
+    shape(corners.map(|c| c.at)).1 > LEAST_HEIGHT * h && agreement(facets, corners).is_none_or(|a| a > 0.0)
+}
+
+struct Mending<'a> {
+    edges: HalfEdges,
+    cut: &'a mut Cut,
+    facets: &'a Facets<'a>,
+    h: f64,
+}
+
+impl Mending<'_> {
+    fn fits(&self, t: [u32; 3]) -> bool {
+        fits(self.facets, self.h, &t.map(|v| self.cut.surface.place(v)))
+    }
+
+    fn at(&self, v: u32) -> DVec3 {
+        self.cut.surface.mesh.positions[v as usize]
+    }
+
+    /// Mends one triangle if it can; returns the triangles that are other than before.
+    fn triangle(&mut self, t: u32) -> Vec<u32> {
+        if !self.edges.is_live_triangle(t) || self.fits(self.edges.triangle(t)) {
+            return Vec::new();
+        }
+        let halves = [3 * t, 3 * t + 1, 3 * t + 2];
+        if let Some(&e) = halves.iter().find(|&&e| self.turn_fits(e)) {
+            let both = vec![t, self.edges.twin(e) / 3];
+            self.edges.flip(e);
+            return both;
+        }
+        let mut ways: Vec<(f64, u32)> = halves
+            .iter()
+            .flat_map(|&e| [e, self.edges.twin(e)])
+            .map(|e| (self.at(self.edges.origin(e)).distance(self.at(self.edges.target(e))), e))
+            .collect();
+        ways.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let Some(&(_, e)) = ways.iter().find(|&&(_, e)| self.collapse_fits(e)) else { return Vec::new() };
+        let mut star: Vec<u32> = self.edges.ring(self.edges.origin(e)).map(|e| e / 3).collect();
+        self.edges.collapse_unchecked(e);
+        star.retain(|&t| self.edges.is_live_triangle(t));
+        star
+    }
+
+    fn turn_fits(&self, e: u32) -> bool {
+        let (a, b) = (self.edges.origin(e), self.edges.target(e));
+        let (c, d) = (self.edges.apex(e), self.edges.apex(self.edges.twin(e)));
+        let known = |t: [u32; 3]| agreement(self.facets, &t.map(|v| self.cut.surface.place(v))).is_some_and(|a| a > 0.5);
+        [[a, d, c], [d, b, c]].into_iter().all(|t| self.fits(t) && known(t)) && self.edges.can_flip(e)
+    }
+
+    /// Whether the origin of a half-edge may go into its target: the target must lie on all smooth
+    /// pieces that the origin lies on, and all triangles be fit.
+    fn collapse_fits(&self, e: u32) -> bool {
+        let (from, to) = (self.edges.origin(e), self.edges.target(e));
+        let normal = |s| self.facets.plane(s).normal;
+        let (own, other) = (&self.cut.surface.sides[from as usize], &self.cut.surface.sides[to as usize]);
+        let kept = own.iter().all(|s| other.iter().any(|o| normal(o).dot(normal(s)) > SMOOTH));
+        let gone = [e / 3, self.edges.twin(e) / 3];
+        let star = self.edges.ring(from).map(|e| e / 3).filter(|t| !gone.contains(t));
+        let after = star.map(|t| self.edges.triangle(t).map(|v| if v == from { to } else { v }));
+        kept && after.into_iter().all(|t| self.fits(t)) && self.edges.can_collapse(e)
+    }
+
+    /// Writes the triangles back.
+    fn finish(self, touched: &[u32]) -> Vec<u32> {
+        let mut number = 0;
+        let mut renumbered = Vec::with_capacity(touched.len());
+        let mut triangles = Vec::with_capacity(self.edges.live_triangles());
+        let mut origin = Vec::with_capacity(triangles.capacity());
+        let mut next = touched.iter().peekable();
+        for t in 0..self.edges.triangle_ids() as u32 {
+            let is_touched = next.next_if_eq(&&t).is_some();
+            if !self.edges.is_live_triangle(t) {
+                continue;
+            }
+            if is_touched {
+                renumbered.push(number);
+            }
+            triangles.push(self.edges.triangle(t));
+            origin.push(self.cut.origin[t as usize]);
+            number += 1;
+        }
+        self.cut.surface.mesh.triangles = triangles;
+        self.cut.origin = origin;
+        renumbered
+    }
+}
