@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Surface;
-use super::crease::{Crease, FLAT, Place, nearest};
+use super::crease::{Crease, FLAT, Place, crease, nearest};
 use super::facets::{Facets, Sides};
 use super::snap::shape;
 
@@ -22,70 +22,103 @@ pub(super) struct Cut {
     pub surface: Surface,
     /// The triangle before cutting, for each triangle.
     pub origin: Vec<u32>,
-    /// Triangles before cutting that got a vertex inside.
+    /// Triangles before cutting in which more than their own edges was cut.
     pub centred: Vec<u32>,
 }
 
-/// Cuts `surface` at the points given for some of its edges (smaller vertex first).
+/// What must be left alone.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Spared {
+    /// Edges of the first surface that must not be cut, smaller vertex first.
+    pub edges: FxHashSet<[u32; 2]>,
+    /// Triangles of the first surface in which nothing but their own edges is cut.
+    pub triangles: FxHashSet<u32>,
+}
+
+/// Cuts `surface` at the points given for some of its edges (smaller vertex first), then the edges that this
+/// made, and puts corners in where creases meet.
 pub(super) fn cut(
     surface: &Surface,
     facets: &Facets<'_>,
     h: f64,
     points: &[([u32; 2], Crease)],
-    plain: &FxHashSet<u32>,
+    spared: &Spared,
+    wanted: impl Fn(&Crease) -> bool + Sync,
 ) -> Cut {
     let first = surface.mesh.positions.len() as u32;
-    let ids: FxHashMap<[u32; 2], u32> = points.iter().zip(first..).map(|(&(edge, _), id)| (edge, id)).collect();
-    let mut positions = surface.mesh.positions.clone();
-    let mut sides = surface.sides.clone();
-    positions.extend(points.iter().map(|(_, c)| super::rounded(c.place.at)));
-    sides.extend(points.iter().map(|(_, c)| c.place.sides));
-    let on = |a: u32, b: u32| ids.get(&[a.min(b), a.max(b)]).copied();
-    let touched: Vec<Option<[Option<u32>; 3]>> = surface
-        .mesh
-        .triangles
-        .par_iter()
-        .map(|&[a, b, c]| {
-            let cuts = [on(a, b), on(b, c), on(c, a)];
-            cuts.iter().any(Option::is_some).then_some(cuts)
-        })
-        .collect();
-    let mut triangles = Vec::with_capacity(surface.mesh.triangles.len() + 2 * points.len());
-    let mut origin = Vec::with_capacity(triangles.capacity());
-    let mut centred = Vec::new();
-    for (id, (&corners, cuts)) in surface.mesh.triangles.iter().zip(&touched).enumerate() {
-        let Some(cuts) = cuts else {
-            triangles.push(corners);
-            origin.push(id as u32);
-            continue;
-        };
-        if let [Some(m), Some(n), Some(o)] = *cuts {
-            let three = [m, n, o].map(|v| Place { at: positions[v as usize], sides: sides[v as usize] });
-            let wanted = !plain.contains(&(id as u32));
-            let centre = wanted.then(|| corner(facets, h, three)).flatten().map(|place| {
-                centred.push(id as u32);
-                positions.push(super::rounded(place.at));
-                sides.push(place.sides);
-                positions.len() as u32 - 1
-            });
-            split_in_three(corners, [m, n, o], centre, &mut triangles);
-        } else {
-            split(corners, *cuts, &positions, &mut triangles);
-        }
-        origin.resize(triangles.len(), id as u32);
-    }
-    let mesh = crate::mesh::TriMesh { positions, triangles };
-    let mut cut = Cut { surface: Surface { mesh, sides }, origin, centred };
-    raise_corners(&mut cut, facets, h, plain);
+    let count = surface.mesh.triangles.len() as u32;
+    let mut cut = Cut { surface: surface.clone(), origin: (0..count).collect(), centred: Vec::new() };
+    subdivide(&mut cut, points);
+    let again: Vec<([u32; 2], Crease)> = second_points(&cut, facets, h, first, spared, wanted);
+    let edges: FxHashSet<[u32; 2]> = again.iter().map(|p| p.0).collect();
+    let has_cut = |t: &[u32; 3]| edges_of(t).iter().any(|e| edges.contains(e));
+    let touched = cut.surface.mesh.triangles.iter().zip(&cut.origin).filter(|(t, _)| has_cut(t));
+    cut.centred = touched.map(|(_, &origin)| origin).collect();
+    subdivide(&mut cut, &again);
+    raise_corners(&mut cut, facets, h, spared);
     cut
 }
 
+/// The edges of a triangle, smaller vertex first.
+pub(super) fn edges_of(t: &[u32; 3]) -> [[u32; 2]; 3] {
+    [0, 1, 2].map(|k| [t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3])])
+}
+
+/// Where edges are to be cut that end in a point inserted before, the `first` of these vertices.
+fn second_points(
+    cut: &Cut,
+    facets: &Facets<'_>,
+    h: f64,
+    first: u32,
+    spared: &Spared,
+    wanted: impl Fn(&Crease) -> bool + Sync,
+) -> Vec<([u32; 2], Crease)> {
+    let triangles = cut.surface.mesh.triangles.par_iter().zip(&cut.origin);
+    let mut edges: Vec<([u32; 2], bool)> = triangles
+        .filter(|(t, _)| t.iter().any(|&v| v >= first))
+        .flat_map_iter(|(t, origin)| edges_of(t).map(|edge| (edge, spared.triangles.contains(origin))))
+        .filter(|(edge, _)| edge[1] >= first)
+        .collect();
+    edges.par_sort_unstable();
+    // An edge is there once for each of its triangles.
+    let pairs: Vec<&[([u32; 2], bool)]> = edges.chunk_by(|a, b| a.0 == b.0).collect();
+    let free = pairs.into_par_iter().filter(|pair| pair.iter().all(|(_, spared)| !spared)).map(|pair| pair[0].0);
+    let place = |v: u32| cut.surface.place(v);
+    free.filter_map(|edge| Some((edge, crease(facets, h, &place(edge[0]), &place(edge[1])).filter(&wanted)?))).collect()
+}
+
+/// Cuts triangles at points on their edges.
+fn subdivide(cut: &mut Cut, points: &[([u32; 2], Crease)]) {
+    let Cut { surface: Surface { mesh, sides }, origin, .. } = cut;
+    let first = mesh.positions.len() as u32;
+    let ids: FxHashMap<[u32; 2], u32> = points.iter().zip(first..).map(|(&(edge, _), id)| (edge, id)).collect();
+    mesh.positions.extend(points.iter().map(|(_, c)| super::rounded(c.place.at)));
+    sides.extend(points.iter().map(|(_, c)| c.place.sides));
+    let on = |a: u32, b: u32| ids.get(&[a.min(b), a.max(b)]).copied();
+    let cuts_of = |&[a, b, c]: &[u32; 3]| {
+        let cuts = [on(a, b), on(b, c), on(c, a)];
+        cuts.iter().any(Option::is_some).then_some(cuts)
+    };
+    let cuts: Vec<Option<[Option<u32>; 3]>> = mesh.triangles.par_iter().map(cuts_of).collect();
+    let mut triangles = Vec::with_capacity(mesh.triangles.len() + 2 * points.len());
+    let mut origins = Vec::with_capacity(triangles.capacity());
+    for ((&corners, cuts), &id) in mesh.triangles.iter().zip(cuts).zip(origin.iter()) {
+        match cuts {
+            Some(cuts) => split(corners, cuts, &mesh.positions, &mut triangles),
+            None => triangles.push(corners),
+        }
+        origins.resize(triangles.len(), id);
+    }
+    mesh.triangles = triangles;
+    *origin = origins;
+}
+
 /// Puts a vertex into triangles whose corners lie on creases that meet in a corner not yet there.
-fn raise_corners(cut: &mut Cut, facets: &Facets<'_>, h: f64, plain: &FxHashSet<u32>) {
+fn raise_corners(cut: &mut Cut, facets: &Facets<'_>, h: f64, spared: &Spared) {
     let surface = &cut.surface;
     let found: Vec<(u32, Place)> = (0..surface.mesh.triangles.len() as u32)
         .into_par_iter()
-        .filter(|&t| !surface.is_smooth(facets, t) && !plain.contains(&cut.origin[t as usize]))
+        .filter(|&t| !surface.is_smooth(facets, t) && !spared.triangles.contains(&cut.origin[t as usize]))
         .filter_map(|t| Some((t, corner(facets, h, surface.mesh.triangles[t as usize].map(|v| surface.place(v)))?)))
         .collect();
     for (t, place) in found {
@@ -124,13 +157,14 @@ fn corner(facets: &Facets<'_>, h: f64, three: [Place; 3]) -> Option<Place> {
     (!near && reach < 2.0 * h && (beyond < 0.05 * h || reach < h)).then_some(Place { at, sides })
 }
 
-/// Cuts a triangle at points on one or two of its edges (corner k to the next).
+/// Cuts a triangle at points on some of its edges (corner k to the next).
 fn split(corners: [u32; 3], cuts: [Option<u32>; 3], at: &[DVec3], triangles: &mut Vec<[u32; 3]>) {
     for turn in 0..3 {
         let [a, b, c] = [0, 1, 2].map(|k| corners[(turn + k) % 3]);
         let [ab, bc, ca] = [0, 1, 2].map(|k| cuts[(turn + k) % 3]);
         match (ab, bc, ca) {
             (Some(m), None, None) => return triangles.extend([[a, m, c], [m, b, c]]),
+            (Some(m), Some(n), Some(o)) => return triangles.extend([[a, m, o], [m, b, n], [o, n, c], [m, n, o]]),
             (Some(m), Some(n), None) => {
                 triangles.push([m, b, n]);
                 let height = |t: [u32; 3]| shape(t.map(|v| at[v as usize])).1;
@@ -141,13 +175,5 @@ fn split(corners: [u32; 3], cuts: [Option<u32>; 3], at: &[DVec3], triangles: &mu
             }
             _ => {}
         }
-    }
-}
-
-/// Cuts a triangle at points on all its edges.
-fn split_in_three([a, b, c]: [u32; 3], [m, n, o]: [u32; 3], centre: Option<u32>, triangles: &mut Vec<[u32; 3]>) {
-    match centre {
-        None => triangles.extend([[a, m, o], [m, b, n], [o, n, c], [m, n, o]]),
-        Some(z) => triangles.extend([[a, m, z], [a, z, o], [m, b, z], [b, n, z], [n, c, z], [c, o, z]]),
     }
 }

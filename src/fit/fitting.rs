@@ -4,11 +4,21 @@ use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use super::crease::{Crease, SMOOTH, crease};
+use super::cut::{Spared, edges_of};
 use super::facets::Facets;
 use super::{Around, FitOptions, FitReport, Surface, rounded, snap};
 
 /// A sharp crease nearer to the surface than this, h, is left out.
 const SHARP_SAG: f64 = 0.002;
+
+impl FitOptions {
+    /// Whether an edge is to be cut there.
+    pub(super) fn wants(&self, crease: &Crease, h: f64) -> bool {
+        let sharp = crease.cosine < SMOOTH;
+        let least = if sharp { SHARP_SAG } else { self.sag };
+        crease.sag > least * h && (crease.on_source || (crease.sag < h && sharp))
+    }
+}
 
 /// The state of a fit.
 pub(super) struct Fitting<'a> {
@@ -25,10 +35,8 @@ pub(super) struct Fitting<'a> {
     moved: Vec<bool>,
     /// Where edges are cut, sorted.
     pub points: Vec<([u32; 2], Crease)>,
-    /// Edges that must not be cut.
-    uncut: FxHashSet<[u32; 2]>,
-    /// Triangles that get no vertex inside.
-    pub plain: FxHashSet<u32>,
+    /// Where nothing is cut any more.
+    pub spared: Spared,
     /// Triangles of the home surface that are other than when they were last judged; `None` for all that
     /// differ from home.
     dirty: Option<FxHashSet<u32>>,
@@ -57,8 +65,7 @@ impl<'a> Fitting<'a> {
             surface,
             moved,
             points,
-            uncut: FxHashSet::default(),
-            plain: FxHashSet::default(),
+            spared: Spared::default(),
             dirty: None,
             snapped: snapped.len(),
             given_up: 0,
@@ -93,20 +100,20 @@ impl<'a> Fitting<'a> {
         for &t in bad {
             let ids = self.home.mesh.triangles[t as usize];
             self.given_up += 1;
-            if is_centred.contains(&t) && self.plain.insert(t) {
+            if is_centred.contains(&t) && self.spared.triangles.insert(t) {
                 continue;
             }
-            let cut: Vec<[u32; 2]> = sides_of(ids).into_iter().filter(|e| is_cut.contains(e)).collect();
+            let cut: Vec<[u32; 2]> = edges_of(&ids).into_iter().filter(|e| is_cut.contains(e)).collect();
             if !cut.is_empty() {
-                self.uncut.extend(&cut);
+                self.spared.edges.extend(&cut);
                 cut.iter().for_each(|e| dirty.extend(self.around.of(e[0]).iter().filter(|t| self.around.of(e[1]).contains(t))));
             } else if ids.iter().any(|&v| self.moved[v as usize]) {
                 back.extend(ids);
             } else {
                 for &near in ids.iter().flat_map(|&v| self.around.of(v)) {
                     let ids = self.home.mesh.triangles[near as usize];
-                    self.plain.insert(near);
-                    self.uncut.extend(sides_of(ids));
+                    self.spared.triangles.insert(near);
+                    self.spared.edges.extend(edges_of(&ids));
                     back.extend(ids);
                 }
             }
@@ -118,8 +125,8 @@ impl<'a> Fitting<'a> {
             dirty.extend(self.around.of(v));
         }
         let touched = |e: &[u32; 2]| back.contains(&e[0]) || back.contains(&e[1]);
-        self.points.retain(|(e, _)| !touched(e) && !self.uncut.contains(e));
-        let again = self.edges.par_iter().copied().filter(|e| touched(e) && !self.uncut.contains(e));
+        self.points.retain(|(e, _)| !touched(e) && !self.spared.edges.contains(e));
+        let again = self.edges.par_iter().copied().filter(|e| touched(e) && !self.spared.edges.contains(e));
         let new = creases(&self.surface, self.facets, self.h, &self.options, again);
         self.points.extend(new);
         self.points.par_sort_unstable_by_key(|p| p.0);
@@ -130,11 +137,6 @@ impl<'a> Fitting<'a> {
     pub(super) fn report(&self) -> FitReport {
         FitReport { moved: self.snapped, inserted: self.points.len(), given_up: self.given_up }
     }
-}
-
-/// The edges of a triangle, smaller vertex first.
-fn sides_of(t: [u32; 3]) -> [[u32; 2]; 3] {
-    [0, 1, 2].map(|k| [t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3])])
 }
 
 /// Moves vertices that lie beside the plane of their one facet onto it.
@@ -178,10 +180,7 @@ fn creases(
 ) -> Vec<([u32; 2], Crease)> {
     let found = edges.filter_map(|edge| {
         let found = crease(facets, h, &surface.place(edge[0]), &surface.place(edge[1]))?;
-        let sharp = found.cosine < SMOOTH;
-        let wanted = found.sag > if sharp { SHARP_SAG } else { options.sag } * h
-            && (found.on_source || (found.sag < h && sharp));
-        wanted.then_some((edge, found))
+        options.wants(&found, h).then_some((edge, found))
     });
     let mut found: Vec<_> = found.collect();
     found.par_sort_unstable_by_key(|p| p.0);

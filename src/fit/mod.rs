@@ -145,7 +145,7 @@ pub fn sharpen(
     let mut fitting = fitting::Fitting::new(home, facets, h, options);
     for _ in 0..MOST_ROUNDS {
         progress.check()?;
-        let mut cut = cut::cut(&fitting.surface, facets, h, &fitting.points, &fitting.plain);
+        let mut cut = cut::cut(&fitting.surface, facets, h, &fitting.points, &fitting.spared, |c| options.wants(c, h));
         let away = fitting.changed(&cut.origin);
         let mended = mend::mend(&mut cut, facets, h, &away);
         let mut changed = fitting.to_judge(&cut.origin);
