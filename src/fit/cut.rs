@@ -135,12 +135,14 @@ fn raise_corners(cut: &mut Cut, facets: &Facets<'_>, h: f64, spared: &Spared) {
 
 /// The corner in which the creases through three points meet, if it is another point.
 fn corner(facets: &Facets<'_>, h: f64, three: [Place; 3]) -> Option<Place> {
-    let mut sides = Sides::of(three.iter().flat_map(|p| p.sides.iter()));
     let normal = |s| facets.plane(s).normal;
-    let distinct = sides.iter().enumerate().filter(|&(k, s)| {
-        sides.iter().take(k).all(|o| normal(o).dot(normal(s)) < FLAT)
-    });
-    if distinct.count() < 3 {
+    let mut sides = Sides::default();
+    for side in three.iter().flat_map(|p| p.sides.iter()) {
+        if sides.iter().all(|o| normal(o).dot(normal(side)) < FLAT) {
+            sides.add(side);
+        }
+    }
+    if sides.iter().count() < 3 {
         return None;
     }
     let middle = three.iter().map(|p| p.at).sum::<DVec3>() / 3.0;

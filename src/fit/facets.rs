@@ -133,8 +133,10 @@ impl<'a> Facets<'a> {
     /// `p` then lies, model units.
     pub(super) fn walk(&self, side: Side, p: DVec3) -> (Side, f64) {
         let mut at = side;
+        let mut last = 0.0;
         for _ in 0..LONGEST_WALK {
             let Some((edge, beyond)) = self.exit(at, p) else { return (at, 0.0) };
+            last = beyond;
             let (next, turned) = self.across[at.facet() as usize][edge];
             if next == NONE {
                 return (at, beyond);
@@ -145,7 +147,7 @@ impl<'a> Facets<'a> {
             }
             at = next;
         }
-        (at, f64::INFINITY)
+        (at, last)
     }
 
     /// The edge of a side's triangle that `p` lies farthest beyond, seen along the normal, and by how much; `None`
@@ -158,7 +160,10 @@ impl<'a> Facets<'a> {
         let normal = self.planes[side.facet() as usize].normal;
         let beyond = |k: usize| {
             let (a, b) = (corners[k], corners[(k + 1) % 3]);
-            (b - a).cross(normal).normalize_or_zero().dot(p - a)
+            let outward = (b - a).cross(normal);
+            let far = outward.normalize_or_zero().dot(p - a);
+            // On the edge itself, so that no walk goes to and fro.
+            if far * far < 1e-18 * outward.length_squared() { 0.0 } else { far }
         };
         let far = [beyond(0), beyond(1), beyond(2)];
         let k = (0..3).max_by(|&i, &j| far[i].total_cmp(&far[j]))?;

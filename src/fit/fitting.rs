@@ -82,17 +82,21 @@ impl<'a> Fitting<'a> {
         (0..origin.len() as u32).into_par_iter().filter(cut_or_moved).collect()
     }
 
-    /// Those of them that have not been judged yet.
-    pub(super) fn to_judge(&self, origin: &[u32]) -> Vec<u32> {
-        match &self.dirty {
-            Some(dirty) => (0..origin.len() as u32).filter(|&t| dirty.contains(&origin[t as usize])).collect(),
-            None => self.changed(origin),
-        }
+    /// Whether a triangle, given what it was at home, is other than when it was last judged.
+    pub(super) fn is_dirty(&self, origin: u32) -> bool {
+        self.dirty.as_ref().is_none_or(|dirty| dirty.contains(&origin))
+    }
+
+    /// Whether it was taken back since.
+    pub(super) fn was_dirtied(&self, origin: u32) -> bool {
+        self.dirty.as_ref().is_some_and(|dirty| dirty.contains(&origin))
     }
 
     /// Takes back, step by step, what was done at the home triangles `bad`: first vertices
-    /// inside, then cuts, then moves, then all of this around them.
-    pub(super) fn undo(&mut self, bad: &[u32], centred: &[u32]) {
+    /// inside, then cuts, then moves, then all of this around them. False when there is nothing left to
+    /// take back.
+    pub(super) fn undo(&mut self, bad: &[u32], centred: &[u32]) -> bool {
+        let before = (self.points.len(), self.spared.edges.len(), self.spared.triangles.len());
         let is_centred: FxHashSet<u32> = centred.iter().copied().collect();
         let is_cut: FxHashSet<[u32; 2]> = self.points.iter().map(|p| p.0).collect();
         let mut dirty: FxHashSet<u32> = bad.iter().copied().collect();
@@ -121,7 +125,6 @@ impl<'a> Fitting<'a> {
         for &v in &back {
             self.surface.mesh.positions[v as usize] = self.home.at(v);
             self.surface.sides[v as usize] = self.home.sides[v as usize];
-            self.moved[v as usize] = false;
             dirty.extend(self.around.of(v));
         }
         let touched = |e: &[u32; 2]| back.contains(&e[0]) || back.contains(&e[1]);
@@ -131,6 +134,9 @@ impl<'a> Fitting<'a> {
         self.points.extend(new);
         self.points.par_sort_unstable_by_key(|p| p.0);
         self.dirty = Some(dirty);
+        let moved_back = back.iter().any(|&v| self.moved[v as usize]);
+        back.iter().for_each(|&v| self.moved[v as usize] = false);
+        moved_back || before != (self.points.len(), self.spared.edges.len(), self.spared.triangles.len())
     }
 
     /// What was done.

@@ -7,15 +7,21 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::crease::Place;
+use super::crease::{Place, nearest};
 use super::cut::Cut;
-use super::facets::Facets;
+use super::facets::{Facets, Sides};
 use super::snap::shape;
 use super::{SMOOTH, agreement};
 use crate::mesh::HalfEdges;
 
 /// The least height, h, of the triangles that it makes.
 const LEAST_HEIGHT: f64 = 1e-3;
+
+/// How often each wrong triangle is tried: what is beside it may have been mended since.
+const PASSES: usize = 3;
+
+/// Where on the way between two neighbours a vertex is tried.
+const SHARES: [f64; 3] = [0.5, 0.2, 0.8];
 
 /// Mends the triangles among `changed` that face away from their facets or are too thin. Returns the
 /// triangles that it changed, by the numbers they have after.
@@ -32,7 +38,14 @@ pub(super) fn mend(cut: &mut Cut, facets: &Facets<'_>, h: f64, changed: &[u32]) 
     let vertices = cut.surface.mesh.positions.len();
     let Ok(edges) = HalfEdges::new(&cut.surface.mesh.triangles, vertices) else { return Vec::new() };
     let mut mending = Mending { edges, cut, facets, h };
-    let mut touched: Vec<u32> = wrong.into_iter().flat_map(|t| mending.triangle(t)).collect();
+    let mut touched = Vec::new();
+    for _ in 0..PASSES {
+        let before = touched.len();
+        wrong.iter().for_each(|&t| touched.extend(mending.triangle(t)));
+        if touched.len() == before {
+            break;
+        }
+    }
     touched.sort_unstable();
     touched.dedup();
     mending.finish(&touched)
@@ -41,6 +54,18 @@ pub(super) fn mend(cut: &mut Cut, facets: &Facets<'_>, h: f64, changed: &[u32]) 
 /// Whether a triangle faces the way of its facets and is not too thin.
 fn fits(facets: &Facets<'_>, h: f64, corners: &[Place; 3]) -> bool {
     shape(corners.map(|c| c.at)).1 > LEAST_HEIGHT * h && agreement(facets, corners).is_none_or(|a| a > 0.0)
+}
+
+/// Whether of triangles, fit or not before and after, more are fit and none no longer is.
+fn betters(fits: impl Iterator<Item = (bool, bool)>) -> bool {
+    let mut gained = false;
+    for (before, after) in fits {
+        if before && !after {
+            return false;
+        }
+        gained |= after && !before;
+    }
+    gained
 }
 
 struct Mending<'a> {
@@ -76,11 +101,44 @@ impl Mending<'_> {
             .map(|e| (self.at(self.edges.origin(e)).distance(self.at(self.edges.target(e))), e))
             .collect();
         ways.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let Some(&(_, e)) = ways.iter().find(|&&(_, e)| self.collapse_fits(e)) else { return Vec::new() };
+        let Some(&(_, e)) = ways.iter().find(|&&(_, e)| self.collapse_fits(e)) else { return self.slide(t) };
         let mut star: Vec<u32> = self.edges.ring(self.edges.origin(e)).map(|e| e / 3).collect();
         self.edges.collapse_unchecked(e);
         star.retain(|&t| self.edges.is_live_triangle(t));
         star
+    }
+
+    /// Moves a corner of a triangle along its crease, between its neighbours there, if that makes all
+    /// triangles around it fit; returns these.
+    fn slide(&mut self, t: u32) -> Vec<u32> {
+        for v in self.edges.triangle(t) {
+            let own = self.cut.surface.place(v);
+            let neighbours: Vec<u32> =
+                self.edges.ring(v).map(|e| self.edges.target(e)).filter(|&w| self.lies_on_all(w, &own.sides)).collect();
+            if own.sides.iter().count() != 2 || neighbours.len() < 2 {
+                continue;
+            }
+            let before: Vec<bool> = self.edges.ring(v).map(|e| self.fits(self.edges.triangle(e / 3))).collect();
+            let ends = (0..neighbours.len()).flat_map(|i| (0..i).map(move |j| [i, j]));
+            let between = ends.flat_map(|[i, j]| SHARES.map(|s| self.at(neighbours[i]).lerp(self.at(neighbours[j]), s)));
+            for target in between.collect::<Vec<_>>() {
+                let Some(at) = nearest(own.sides.iter().map(|s| self.facets.plane(s)), target) else { continue };
+                self.cut.surface.put(v, Place { at: super::rounded(at), ..own });
+                let now = self.edges.ring(v).map(|e| self.fits(self.edges.triangle(e / 3)));
+                if betters(before.iter().copied().zip(now)) {
+                    return self.edges.ring(v).map(|e| e / 3).collect();
+                }
+            }
+            self.cut.surface.put(v, own);
+        }
+        Vec::new()
+    }
+
+    /// Whether a vertex lies on the smooth pieces of all `sides`.
+    fn lies_on_all(&self, vertex: u32, sides: &Sides) -> bool {
+        let normal = |s| self.facets.plane(s).normal;
+        let on = &self.cut.surface.sides[vertex as usize];
+        sides.iter().all(|s| on.iter().any(|o| normal(o).dot(normal(s)) > SMOOTH))
     }
 
     fn turn_fits(&self, e: u32) -> bool {
@@ -91,16 +149,17 @@ impl Mending<'_> {
     }
 
     /// Whether the origin of a half-edge may go into its target: the target must lie on all smooth
-    /// pieces that the origin lies on, and all triangles be fit.
+    /// pieces that the origin lies on.
     fn collapse_fits(&self, e: u32) -> bool {
         let (from, to) = (self.edges.origin(e), self.edges.target(e));
-        let normal = |s| self.facets.plane(s).normal;
-        let (own, other) = (&self.cut.surface.sides[from as usize], &self.cut.surface.sides[to as usize]);
-        let kept = own.iter().all(|s| other.iter().any(|o| normal(o).dot(normal(s)) > SMOOTH));
+        let kept = self.lies_on_all(to, &self.cut.surface.sides[from as usize]);
         let gone = [e / 3, self.edges.twin(e) / 3];
-        let star = self.edges.ring(from).map(|e| e / 3).filter(|t| !gone.contains(t));
-        let after = star.map(|t| self.edges.triangle(t).map(|v| if v == from { to } else { v }));
-        kept && after.into_iter().all(|t| self.fits(t)) && self.edges.can_collapse(e)
+        let after = |t: u32| {
+            let moved = self.edges.triangle(t).map(|v| if v == from { to } else { v });
+            gone.contains(&t) || self.fits(moved)
+        };
+        let star = self.edges.ring(from).map(|e| (self.fits(self.edges.triangle(e / 3)), after(e / 3)));
+        kept && betters(star) && self.edges.can_collapse(e)
     }
 
     /// Writes the triangles back.

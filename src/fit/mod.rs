@@ -115,11 +115,13 @@ const MOST_ROUNDS: usize = 24;
 pub struct FitOptions {
     /// A crease that lies nearer to the surface than this, h, is left out.
     pub sag: f64,
+    /// How far simplification may take the surface away, h; 0 keeps all triangles.
+    pub tolerance: f64,
 }
 
 impl Default for FitOptions {
     fn default() -> Self {
-        Self { sag: 0.02 }
+        Self { sag: 0.012, tolerance: 0.005 }
     }
 }
 
@@ -134,8 +136,40 @@ pub struct FitReport {
     pub given_up: usize,
 }
 
+/// Times that places given up are tried again on the simplified surface.
+const MOST_RETRIES: usize = 2;
+
+/// Fits a surface to its facets: creases and corners come back, and what is flat gets few triangles.
+pub fn fit(
+    home: &Surface,
+    facets: &Facets<'_>,
+    h: f64,
+    options: &FitOptions,
+    progress: &Progress,
+) -> Result<(Surface, FitReport), Stopped> {
+    let (mut surface, mut report) = sharpen(home, facets, h, options, progress)?;
+    for _ in 0..MOST_RETRIES {
+        surface = simplified(surface, facets, h, options.tolerance, progress)?;
+        if report.given_up == 0 {
+            break;
+        }
+        let again = FitOptions { sag: f64::INFINITY, ..*options };
+        let (sharper, more) = sharpen(&surface, facets, h, &again, progress)?;
+        if more.inserted + more.moved == 0 {
+            break;
+        }
+        surface = sharper;
+        report = FitReport {
+            moved: report.moved + more.moved,
+            inserted: report.inserted + more.inserted,
+            given_up: more.given_up,
+        };
+    }
+    Ok((surface, report))
+}
+
 /// Brings back creases and corners.
-pub fn sharpen(
+fn sharpen(
     home: &Surface,
     facets: &Facets<'_>,
     h: f64,
@@ -148,18 +182,21 @@ pub fn sharpen(
         let mut cut = cut::cut(&fitting.surface, facets, h, &fitting.points, &fitting.spared, |c| options.wants(c, h));
         let away = fitting.changed(&cut.origin);
         let mended = mend::mend(&mut cut, facets, h, &away);
-        let mut changed = fitting.to_judge(&cut.origin);
-        if std::env::var("MW_DEBUG").is_ok() {
-            eprintln!("mended {}", mended.len());
-        }
-        changed.extend(mended);
-        changed.sort_unstable();
-        changed.dedup();
+        let sorted = |mut list: Vec<u32>| {
+            list.extend(&mended);
+            list.sort_unstable();
+            list.dedup();
+            list
+        };
+        let dirty = |t: &u32| fitting.is_dirty(cut.origin[*t as usize]);
+        // A triangle that is back at home is right by itself, but what was near it may not be.
+        let other = sorted(fitting.changed(&cut.origin).into_iter().filter(dirty).collect());
+        let near = sorted((0..cut.origin.len() as u32).filter(|t| fitting.was_dirtied(cut.origin[*t as usize])).chain(other.iter().copied()).collect());
         let before = |t: u32| snap::shape(home.mesh.corners(cut.origin[t as usize] as usize)).0;
-        let mut bad = safeguard::misshapen(&cut.surface, facets, h, &changed, before);
-        bad.extend(safeguard::meeting(&cut.surface.mesh, h, &changed, progress)?);
+        let mut bad = safeguard::misshapen(&cut.surface, facets, h, &other, before);
+        bad.extend(safeguard::meeting(&cut.surface.mesh, h, &near, progress)?);
         if std::env::var("MW_DEBUG").is_ok() {
-            eprintln!("round: {} points, {} changed of {}, {} bad", fitting.points.len(), changed.len(), cut.origin.len(), bad.len());
+            eprintln!("round: {} points, {} changed of {}, {} bad", fitting.points.len(), near.len(), cut.origin.len(), bad.len());
         }
         if bad.is_empty() {
             return Ok((cut.surface, fitting.report()));
@@ -175,19 +212,24 @@ pub fn sharpen(
         let mut bad: Vec<u32> = bad.into_iter().map(|t| cut.origin[t as usize]).collect();
         bad.sort_unstable();
         bad.dedup();
-        fitting.undo(&bad, &cut.centred);
+        if !fitting.undo(&bad, &cut.centred) {
+            break;
+        }
     }
     Ok((home.clone(), FitReport::default()))
 }
 
 /// Fewer triangles, by collapse within `tolerance` (h).
-pub fn simplified(
+fn simplified(
     surface: Surface,
     facets: &Facets<'_>,
     h: f64,
     tolerance: f64,
     progress: &Progress,
 ) -> Result<Surface, Stopped> {
+    if tolerance <= 0.0 {
+        return Ok(surface);
+    }
     let mut frozen = vec![false; surface.mesh.positions.len()];
     for round in 0..6 {
         let simple = simplify::simplify(&surface, facets, h, tolerance, &frozen, progress)?;

@@ -24,6 +24,12 @@ const MOST_EDGES: usize = 96;
 /// The least height of a triangle, h, unless the ones before were lower.
 const LEAST_HEIGHT: f64 = 5e-3;
 
+/// A triangle lies on a facet when its corners are nearer to the facet's plane than this, h.
+const ON_FACET: f64 = 1e-3;
+
+/// Triangles lower than this, h, have no plane of their own.
+const FLAT_HEIGHT: f64 = 0.02;
+
 /// Passes after which the rest stays.
 const MOST_PASSES: usize = 200;
 
@@ -62,7 +68,7 @@ pub(super) fn simplify(
     let debug = std::env::var("MW_DEBUG").is_ok();
     let start = std::time::Instant::now();
     let at: Vec<DVec3> = surface.mesh.positions.par_iter().map(|p| *p / h).collect();
-    let quadrics = quadrics(&edges, &at);
+    let quadrics = quadrics(surface, facets, h, &edges);
     let mut work = Work { surface, facets, edges, quadrics, at, most: tolerance * tolerance };
     let mut active: Vec<u32> = (0..work.at.len() as u32).filter(|&v| !frozen[v as usize]).collect();
     let mut locked = vec![0u32; work.at.len()];
@@ -105,17 +111,30 @@ pub(super) fn simplify(
 }
 
 /// For each vertex the distances from the planes of its triangles.
-fn quadrics(edges: &HalfEdges, at: &[DVec3]) -> Vec<Quadric> {
+fn quadrics(surface: &Surface, facets: &Facets<'_>, h: f64, edges: &HalfEdges) -> Vec<Quadric> {
+    let of_triangle = |t: usize| plane(surface, facets, h, t).map(|(n, p)| Quadric::plane(n, p / h));
+    let all: Vec<Option<Quadric>> = (0..surface.mesh.triangles.len()).into_par_iter().map(of_triangle).collect();
     let of = |v: usize| {
         let mut sum = Quadric::default();
-        for e in edges.ring(v as u32) {
-            let [a, b, c] = edges.triangle(e / 3).map(|v| at[v as usize]);
-            let n = (b - a).cross(c - a).normalize_or_zero();
-            sum += Quadric::plane(n, at[v]);
-        }
+        edges.ring(v as u32).filter_map(|e| all[e as usize / 3]).for_each(|q| sum += q);
         sum
     };
-    (0..at.len()).into_par_iter().map(of).collect()
+    (0..surface.mesh.positions.len()).into_par_iter().map(of).collect()
+}
+
+/// The plane of a triangle, as normal and point: that of the facet it lies on, if it does, since its own is
+/// only as good as its height; none for thin ones.
+fn plane(surface: &Surface, facets: &Facets<'_>, h: f64, t: usize) -> Option<(DVec3, DVec3)> {
+    let corners = surface.places(t as u32);
+    let (normal, height) = shape(corners.map(|c| c.at));
+    let normal = normal.normalize_or_zero();
+    let on = |s: &super::Side| corners.iter().all(|c| facets.plane(*s).distance(c.at).abs() < ON_FACET * h);
+    let agrees = |s: &super::Side| facets.plane(*s).normal.dot(normal);
+    let known = corners.iter().flat_map(|c| c.sides.iter()).filter(on).max_by(|a, b| agrees(a).total_cmp(&agrees(b)));
+    match known {
+        Some(side) => Some((facets.plane(side).normal, facets.plane(side).normal * facets.plane(side).offset)),
+        None => (height > FLAT_HEIGHT * h).then_some((normal, corners[0].at)),
+    }
 }
 
 impl Work<'_> {

@@ -197,10 +197,13 @@ pub fn boolean(
             let facets = crate::fit::Facets::new(&soup.mesh, []);
             let sides = solid::sides(&collapsed, &facets);
             let home = crate::fit::Surface { mesh: collapsed.contour.mesh, sides };
-            let (sharp, _) = crate::fit::sharpen(&home, &facets, lattice.h, &Default::default(), progress)?;
-            stages.begin("simplify")?;
             let tol: f64 = std::env::var("TOL").ok().and_then(|t| t.parse().ok()).unwrap_or(0.005);
-            let sharp = if tol > 0.0 { crate::fit::simplified(sharp, &facets, lattice.h, tol, progress)? } else { sharp };
+            let sag: f64 = std::env::var("SAG").ok().and_then(|t| t.parse().ok()).unwrap_or(0.012);
+            let o = crate::fit::FitOptions { sag, tolerance: tol };
+            let (sharp, r) = crate::fit::fit(&home, &facets, lattice.h, &o, progress)?;
+            if std::env::var("MW_DEBUG").is_ok() {
+                eprintln!("{r:?}");
+            }
             surface = Contour { mesh: sharp.mesh, ..Contour::default() };
         } else {
             surface = collapsed.contour;
