@@ -69,7 +69,7 @@ impl Winding<'_> {
         views: &[Option<View<'_>>],
     ) -> Result<(Vec<bool>, Vec<bool>), Stopped> {
         let side = |(operand, tree): (usize, &super::WindingTree)| {
-            let rough = tree.winding(p);
+            let rough = tree.roughly(p);
             match together.iter().find(|passage| passage.operand == operand) {
                 // Otherwise it passes 1½ or -½.
                 Some(passage) if (rough - 0.5).abs() < 0.5 => (passage.leaving, !passage.leaving),

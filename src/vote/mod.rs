@@ -4,9 +4,9 @@
 mod boundary;
 mod dipoles;
 mod doubt;
-mod fans;
 mod grow;
 mod lid;
+mod loop_tree;
 mod rim;
 mod tally;
 mod winding;

@@ -10,7 +10,7 @@
 use glam::{DVec2, DVec3};
 
 use super::boundary::Loops;
-use super::fans::{Fans, Nearby};
+use super::loop_tree::{LoopTree, Nearby};
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
 
@@ -25,8 +25,6 @@ const AWAY: [DVec3; 3] = [
 ];
 /// Squared size of an edge's factor below which another direction is tried.
 const TOO_SMALL: f64 = 1e-16;
-/// On an edge its field is not defined; any number but infinity will do.
-const TINY: f64 = 1e-100;
 const FOUR_PI: f64 = 4.0 * std::f64::consts::PI;
 const TAU: f64 = std::f64::consts::TAU;
 
@@ -38,7 +36,7 @@ pub(super) enum Rim {
     /// Few edges: exact.
     Short(Loops),
     /// Many edges: what is far is summed in groups.
-    Long(Fans),
+    Long(LoopTree),
 }
 
 /// The winding number at a point, but for a whole number.
@@ -63,7 +61,7 @@ impl Rim {
         Ok(match loops.edges() {
             0 => Self::Closed,
             1..=MOST_EXACT => Self::Short(loops),
-            _ => Self::Long(Fans::new(&loops, progress)?),
+            _ => Self::Long(LoopTree::new(&loops, progress)?),
         })
     }
 
@@ -72,7 +70,7 @@ impl Rim {
         match self {
             Self::Closed => None,
             Self::Short(loops) => Some(View::Short(loops)),
-            Self::Long(fans) => Some(View::Long(fans.around(centre, radius))),
+            Self::Long(tree) => Some(View::Long(tree.around(centre, radius))),
         }
     }
 }
@@ -112,10 +110,11 @@ impl Product {
         self.0 = factor.rotate(self.0);
     }
 
-    /// Makes the length 1. Factors are at most 4 long; after each eight or so this must be called.
+    /// Brings the length to about 1. Factors are as long as areas, so that a few of them may be out of
+    /// range: this must be called after every four or so.
     #[inline]
     pub(super) fn shorten(&mut self) {
-        self.0 /= self.0.length().max(f64::MIN_POSITIVE);
+        self.0 /= self.0.abs().max_element().max(f64::MIN_POSITIVE);
     }
 
     pub(super) fn direction(self) -> DVec2 {
@@ -126,80 +125,87 @@ impl Product {
 /// The way from a point to a vertex.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sight {
-    pub(super) way: DVec3,
-    /// One by the distance.
-    closeness: f64,
+    way: DVec3,
+    distance: f64,
 }
 
 impl Sight {
     #[inline]
     pub(super) fn new(from: DVec3, to: DVec3) -> Self {
         let way = to - from;
-        let closeness = 1.0 / way.length_squared().max(f64::MIN_POSITIVE).sqrt();
-        Self { way: way * closeness, closeness }
+        Self { way, distance: way.length() }
+    }
+
+    /// Towards the vertex, of length 1, or 0 at it.
+    pub(super) fn direction(&self) -> DVec3 {
+        self.way / self.distance.max(f64::MIN_POSITIVE)
     }
 }
 
 /// What there is to an edge seen from a point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Span {
-    cross: DVec3,
-    /// One plus the cosine of the angle between its ends.
-    open: f64,
     ends: [Sight; 2],
+    cross: DVec3,
+    /// The product of the distances, and the same times one plus the cosine between the ways.
+    product: f64,
+    open: f64,
 }
 
 impl Span {
     #[inline]
     pub(super) fn new(a: Sight, b: Sight) -> Self {
-        let (cross, cosine) = (a.way.cross(b.way), a.way.dot(b.way));
-        // Near the edge itself 1 + cos would be all rounding.
-        let open = if cosine < 0.0 { cross.length_squared() / (1.0 - cosine) } else { 1.0 + cosine };
-        Self { cross, open, ends: [a, b] }
+        let (cross, dot, product) = (a.way.cross(b.way), a.way.dot(b.way), a.distance * b.distance);
+        // Near the edge itself the sum would be all rounding.
+        let open = if dot < 0.0 { cross.length_squared() / (product - dot) } else { product + dot };
+        Self { ends: [a, b], cross, product, open }
     }
 
     /// A complex number turned by half the solid angle of the edge and the point far off in
     /// direction `apex`.
     #[inline]
     pub(super) fn turn(&self, apex: DVec3) -> DVec2 {
-        let [a, b] = self.ends;
-        DVec2::new(self.open + apex.dot(a.way + b.way), apex.dot(self.cross))
+        let [a, b] = &self.ends;
+        DVec2::new(self.open + apex.dot(a.way * b.distance + b.way * a.distance), apex.dot(self.cross))
+    }
+
+    /// Whether `turn` is so short that its direction is not good.
+    #[inline]
+    fn spoils(&self, turn: DVec2) -> bool {
+        turn.length_squared() < TOO_SMALL * self.product * self.product
     }
 
     /// What the edge adds to the gradient of the solid angle.
     #[inline]
     pub(super) fn current(&self) -> DVec3 {
-        let [a, b] = self.ends;
-        self.cross * ((a.closeness + b.closeness) / self.open.max(TINY))
+        let [a, b] = &self.ends;
+        let squared = self.product * self.open;
+        self.cross * if squared > 0.0 { (a.distance + b.distance) / squared } else { 0.0 }
     }
 }
 
 fn of_loops(loops: &Loops, p: DVec3) -> Phase {
-    let (mut turn, mut currents, mut smallest) = of_loops_with(loops, p, AWAY[0]);
+    let (mut phase, mut good) = of_loops_with(loops, p, AWAY[0]);
     for apex in &AWAY[1..] {
-        if smallest > TOO_SMALL {
+        if good {
             break;
         }
-        let other = of_loops_with(loops, p, *apex);
-        if other.2 > smallest {
-            (turn, currents, smallest) = other;
-        }
+        (phase, good) = of_loops_with(loops, p, *apex);
     }
-    Phase::new(turn.direction(), currents)
+    phase
 }
 
-/// The product of the edges' turns, the sum of their currents, and the squared size of the smallest
-/// turn.
-fn of_loops_with(loops: &Loops, p: DVec3, apex: DVec3) -> (Product, DVec3, f64) {
-    let (mut turn, mut currents, mut smallest) = (Product::ONE, DVec3::ZERO, f64::INFINITY);
+/// The phase with the point far off in direction `apex`, and whether no vertex spoils it.
+fn of_loops_with(loops: &Loops, p: DVec3, apex: DVec3) -> (Phase, bool) {
+    let (mut turn, mut currents, mut spoilt) = (Product::ONE, DVec3::ZERO, false);
     for points in loops.each() {
         let mut before = Sight::new(p, points[points.len() - 1]);
-        for some in points.chunks(8) {
+        for some in points.chunks(4) {
             for &point in some {
                 let here = Sight::new(p, point);
                 let span = Span::new(before, here);
                 let factor = span.turn(apex);
-                smallest = smallest.min(factor.length_squared());
+                spoilt |= span.spoils(factor);
                 turn.times(factor);
                 currents += span.current();
                 before = here;
@@ -207,7 +213,7 @@ fn of_loops_with(loops: &Loops, p: DVec3, apex: DVec3) -> (Product, DVec3, f64) 
             turn.shorten();
         }
     }
-    (turn, currents, smallest)
+    (Phase::new(turn.direction(), currents), !spoilt)
 }
 
 #[cfg(test)]
