@@ -1,6 +1,8 @@
 //! A vote is an exact point-in-solid test, and the bricks that are stored hold the whole surface.
 
 mod common;
+#[path = "vote/lids.rs"]
+mod lids;
 
 use common::{shapes, stages};
 use glam::{DMat3, DVec3, IVec3};

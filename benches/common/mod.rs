@@ -36,6 +36,21 @@ pub fn torus(around: u32, holes: bool) -> TriMesh {
     TriMesh { positions: (0..around * tube).map(vertex).collect(), triangles }
 }
 
+/// A cylinder of radius 1 from z = 0 to 1, closed below and open above; the open rim has `sides` edges.
+pub fn open_tube(sides: u32) -> TriMesh {
+    let at = |n: u32, z: f64| {
+        let angle = std::f64::consts::TAU * n as f64 / sides as f64;
+        DVec3::new(angle.cos(), angle.sin(), z)
+    };
+    let mut positions = vec![DVec3::ZERO];
+    positions.extend((0..sides).flat_map(|n| [at(n, 0.0), at(n, 1.0)]));
+    let triangles = (0..sides).flat_map(|n| {
+        let [a, b] = [n, (n + 1) % sides].map(|n| 2 * n + 1);
+        [[0, b, a], [a, b, a + 1], [b, b + 1, a + 1]]
+    });
+    TriMesh { positions, triangles: triangles.collect() }
+}
+
 /// A mesh with all that comes before its vote.
 pub struct Ready {
     pub mesh: TriMesh,

@@ -1,15 +1,22 @@
 //! From spans to solid voxels: the 13 directions vote (Bærentzen §3.2), brick by brick, near the
 //! surface only.
 
+mod boundary;
+mod dipoles;
 mod doubt;
 mod grow;
+mod lid;
+mod loop_tree;
+mod rim;
 mod tally;
 mod winding;
 
+pub use dipoles::WindingTree;
 pub use doubt::doubts;
 pub use grow::vote_near_surface;
+pub use lid::Lid;
 pub use tally::{Jury, Votes, voxel_in_brick};
-pub use winding::{Winding, WindingTree};
+pub use winding::Winding;
 
 use serde::Serialize;
 
