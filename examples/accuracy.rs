@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("| model | field | max error | min error | mean of absolute error | voxels |");
     println!("|---|---|---|---|---|---|");
     let ours = RobustOptions::default();
-    let paper = RobustOptions { trust_votes: false, correct_estimates: true, ..ours };
+    let paper = RobustOptions { trust: Trust::Nothing, correct_estimates: true, ..ours };
     for (name, mesh) in [("torus", &torus), ("noisy cube", &cube)] {
         let model = Model::new(mesh)?;
         model.table_2(name, "default, uncorrected", &RobustOptions { correction_rounds: 0, ..ours });

@@ -88,7 +88,7 @@ fn correction_does_not_change_signs_and_walls_of_one_voxel_survive() {
         assert_eq!(d < 0.0, votes.get(v).is_inside, "{v}");
     }
     // The paper's smoothing wears the wall away: that is why votes are trusted.
-    let paper = RobustOptions { trust_votes: false, ..RobustOptions::default() };
+    let paper = RobustOptions { trust: Trust::Nothing, ..RobustOptions::default() };
     let worn = field(&spans, &stages::planes_of(&mesh, &lattice), &votes, &paper);
     assert!(voxels(&worn).filter(|(_, d)| *d < 0.0).count() < inside);
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::length::{Length, parse_duration, parse_size};
+use super::length::{Length, Simplify, parse_duration, parse_size};
 use super::render::{ViewChoice, parse_view};
 use crate::io::{Format, Unit};
 use crate::orient::OrientMode;
@@ -23,7 +23,7 @@ Exit status:
   130  interrupted
 
 IN and OUT may be `-` for standard input and output.
-LEN is 0.4mm, 1in, 1% (of the bounding box diagonal) or a plain number in the file's units.";
+LEN is 0.4mm, 1in, 1% (of the bounding box diagonal), 2h (voxels) or a plain number in the file's units.";
 
 /// Repairs triangle meshes and does booleans on broken ones. Offline, on the CPU.
 #[derive(Debug, Parser)]
@@ -241,6 +241,15 @@ pub struct SolidArgs {
     /// Keep the vertices of every voxel apart: more triangles
     #[arg(long)]
     pub no_collapse: bool,
+    /// Leave edges and corners as the voxels have them, and all triangles
+    #[arg(long)]
+    pub no_fit: bool,
+    /// How far flat parts may move while triangles are saved, or `off` to keep all [default: 0.003h]
+    #[arg(long, value_name = "LEN|off", conflicts_with = "no_fit")]
+    pub simplify: Option<Simplify>,
+    /// Write the result, coloured by what is original (grey) and what was made up (red), to this file
+    #[arg(long, value_name = "FILE.ply")]
+    pub map: Option<PathBuf>,
     /// Refuse to start when more memory would be needed (500M, 2G)
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<u64>,

@@ -88,7 +88,7 @@ impl Limits {
 }
 
 /// Refuses maps that could not be written or would not be found.
-fn check_map(map: &Path, inputs: &[&Path]) -> Result<(), Failure> {
+pub(super) fn check_map(map: &Path, inputs: &[&Path]) -> Result<(), Failure> {
     if is_stream(map) {
         return Err(Failure::usage("--map wants a file"));
     }

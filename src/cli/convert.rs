@@ -29,7 +29,8 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     if input.loaded.parts.len() > 1 {
         report.warnings.push(format!("the {} objects of the input become one", input.loaded.parts.len()));
     }
-    report.warnings.extend(colour_note(&input.loaded, target.options.format));
+    let lost = |colours| lost_colours(colours, &input.loaded.mesh, target.options.format);
+    report.warnings.extend(input.loaded.colours.as_ref().and_then(lost));
     let before = state(&input.loaded.mesh, session)?;
     let (entry, after) = report.timed("write and verify", |_| {
         write_verified(&target, &input.loaded.mesh, input.loaded.colours.as_ref(), session, |read| {
@@ -89,8 +90,8 @@ fn check_colours(read: &Loaded, given: &Loaded) -> Result<(), Failure> {
 }
 
 /// What becomes of colours that the format has no place for.
-fn colour_note(given: &Loaded, format: Format) -> Option<String> {
-    match given.colours.as_ref()?.carried_by(format, &given.mesh) {
+pub(super) fn lost_colours(colours: &Colours, mesh: &TriMesh, format: Format) -> Option<String> {
+    match colours.carried_by(format, mesh) {
         Carried::Wholly => None,
         Carried::Roughly => Some(format!("{format} has no place for colours of this kind; they were averaged")),
         Carried::Not => Some(format!("{format} holds no colours; they are left out")),

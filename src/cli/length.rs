@@ -19,6 +19,32 @@ pub enum Length {
     Percent(f64),
 }
 
+/// How far simplification may go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Simplify {
+    /// Not at all.
+    Off,
+    /// As far as this.
+    Within(Length),
+}
+
+impl FromStr for Simplify {
+    type Err = QuantityError;
+
+    fn from_str(text: &str) -> Result<Self, QuantityError> {
+        if text == "off" { Ok(Self::Off) } else { text.parse().map(Self::Within) }
+    }
+}
+
+impl fmt::Display for Simplify {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Off => f.write_str("off"),
+            Self::Within(length) => length.fmt(f),
+        }
+    }
+}
+
 /// What a [`Length`] is measured against.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {
@@ -61,7 +87,7 @@ pub enum QuantityError {
     },
 }
 
-const A_LENGTH: &str = "a length such as 0.4mm, 1in, 1% (of the bounding box diagonal) or 0.4 (in the file's units)";
+const A_LENGTH: &str = "a length such as 0.4mm, 1in, 1% (of the bounding box diagonal), 2h (voxels) or 0.4 (in the file's units)";
 const A_SIZE: &str = "a size such as 500M, 2G or 1500000";
 const A_DURATION: &str = "a duration such as 30s, 5m or 1h";
 

@@ -10,18 +10,19 @@ use crate::progress::Event;
 
 /// The stages of a run in order, and about what share of its time each takes, in percent (the
 /// Stanford bunny at 256, file to file).
-const STAGES: [(&str, u32); 11] = [
+const STAGES: [(&str, u32); 12] = [
     ("read", 2),
-    ("examine", 5),
+    ("examine", 4),
     ("orient", 2),
-    ("ldi", 8),
+    ("ldi", 6),
     ("spans", 1),
-    ("vote", 20),
-    ("sdf", 12),
-    ("contour", 6),
-    ("collapse", 24),
-    ("write", 3),
-    ("verify", 17),
+    ("vote", 12),
+    ("sdf", 8),
+    ("contour", 5),
+    ("collapse", 12),
+    ("fit", 38),
+    ("write", 2),
+    ("verify", 7),
 ];
 
 /// The bar and the stage it shows.

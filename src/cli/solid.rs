@@ -7,15 +7,18 @@ use serde_json::json;
 use super::args::SolidArgs;
 use super::exit::{Exit, Failure};
 use super::input::{self, Input};
-use super::length::Scale;
+use super::length::{Scale, Simplify};
 use super::output::{Target, write_verified};
 use super::report::RunReport;
 use super::session::Session;
 use super::{limits, summary};
-use crate::io::{Loaded, Unit};
+use crate::fit::FitOptions;
+use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
-use crate::pipeline::{self, Options, VoxelSize};
+use crate::sdf::{RobustOptions, Trust};
+use crate::vote::VoteRule;
+use crate::pipeline::{self, Options, Outcome, TriangleSource, VoxelSize};
 
 /// Meshes and what is to be made of them.
 pub struct Job<'a> {
@@ -33,6 +36,12 @@ pub struct Job<'a> {
 pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let args = job.args;
     let mut target = args.output.as_deref().map(|path| Target::new(path, &args.writing, &job.paths)).transpose()?;
+    if let Some(map) = &args.map {
+        super::compare::check_map(map, &job.paths)?;
+        if args.output.as_deref().is_some_and(|output| output == map) {
+            return Err(Failure::usage("--map and -o name the same file"));
+        }
+    }
     let mut inputs = report.timed("read", |_| input::read_all(&job.paths, &args.reading, session))?;
     for (input, name) in inputs.iter_mut().zip(&job.names) {
         input.entry.name = Some(name.clone());
@@ -57,13 +66,37 @@ fn options(args: &SolidArgs, unit: Option<Unit>, inputs: &[Input]) -> Result<Opt
         Some(length) => VoxelSize::Length(length.resolve(&Scale { unit, diagonal, voxel: None })?),
         None => VoxelSize::Along(args.resolution),
     };
+    let longest = bounds.map_or(0.0, |b| b.size().max_element());
+    let scale = Scale { unit, diagonal, voxel: Some(voxel.spacing(longest)) };
     Ok(Options {
+        fit: fit(args, &scale, inputs)?,
+        classes: inputs.iter().map(|input| pipeline::classes(input.loaded.colours.as_ref())).collect(),
         orient: args.orient.into(),
         rule: args.vote.into(),
+        robust: RobustOptions { trust: trust(args.vote.into()), ..RobustOptions::default() },
         collapse: !args.no_collapse,
         max_memory: args.max_memory,
         ..Options::new(voxel)
     })
+}
+
+/// Only votes that end in the winding number have no noise to be smoothed away.
+fn trust(rule: VoteRule) -> Trust {
+    if rule == VoteRule::Winding { Trust::All } else { Trust::Sure }
+}
+
+/// What `--no-fit` and `--simplify` ask for. Colours that vary within triangles would be smeared over the
+/// large triangles of simplified flat parts, so with them all triangles are kept unless it is asked for.
+fn fit(args: &SolidArgs, scale: &Scale, inputs: &[Input]) -> Result<Option<FitOptions>, Failure> {
+    let varying = |input: &Input| matches!(input.loaded.colours, Some(Colours::Vertices(_) | Colours::Corners(_)));
+    let usual = FitOptions::default();
+    let tolerance = match (args.simplify, scale.voxel) {
+        (Some(Simplify::Off), _) => 0.0,
+        (Some(Simplify::Within(length)), Some(h)) if h > 0.0 => length.resolve(scale)? / h,
+        _ if inputs.iter().any(varying) => 0.0,
+        _ => usual.tolerance,
+    };
+    Ok((!args.no_fit).then_some(FitOptions { tolerance, ..usual }))
 }
 
 /// The options as the report states them, after defaults.
@@ -80,6 +113,9 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
         "orient": format!("{:?}", options.orient).to_lowercase(),
         "vote": options.rule,
         "collapse": options.collapse,
+        "fit": options.fit.is_some(),
+        "simplify_voxels": options.fit.map(|fit| fit.tolerance),
+        "simplify_as_given": args.simplify.map(|simplify| simplify.to_string()),
         "threads": rayon::current_num_threads(),
         "max_memory_bytes": options.max_memory,
         "timeout_seconds": args.common.timeout.map(|timeout| timeout.as_secs_f64()),
@@ -136,9 +172,17 @@ fn make(
     drop(meshes);
     report.stages.extend(outcome.report.stages.iter().cloned());
     report.warnings.extend(outcome.report.warnings.iter().cloned());
-    report.pipeline = Some(outcome.report);
+    if let Some(path) = &args.map {
+        report.timed("map", |_| write_map(path, &outcome, session))?;
+    }
+    report.pipeline = Some(outcome.report.clone());
+    let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
+    let colours = pipeline::carry_colours(&outcome, &operands);
+    report.warnings.extend(colours.as_ref().and_then(|colours| {
+        super::convert::lost_colours(colours, &outcome.mesh, target.options.format)
+    }));
     let (entry, validity) = report.timed("write and verify", |_| {
-        write_verified(target, &outcome.mesh, None, session, |read| judge(read, &outcome.mesh, session))
+        write_verified(target, &outcome.mesh, colours.as_ref(), session, |read| judge(read, &outcome.mesh, session))
     })?;
     report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
     let broken = limits::broken(report, options.max_memory);
@@ -149,6 +193,19 @@ fn make(
     let name = unit.map(|unit| unit.to_string());
     summary::say(session, report, name.as_deref());
     Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+}
+
+/// What is original, and what closes a hole.
+const ORIGINAL: Rgba = [205, 210, 215, 255];
+const MADE_UP: Rgba = [220, 60, 40, 255];
+
+/// Writes the result coloured by where its triangles come from.
+fn write_map(path: &Path, outcome: &Outcome, session: &Session) -> Result<(), Failure> {
+    let colour = |source: &TriangleSource| if *source == TriangleSource::Closed { MADE_UP } else { ORIGINAL };
+    let colours = Colours::Faces(outcome.sources.iter().map(colour).collect());
+    session.progress.check()?;
+    io::write_coloured(path, &outcome.mesh, Some(&colours), &WriteOptions::new(Format::Ply))
+        .map_err(|e| Failure::internal(e.to_string()))
 }
 
 /// Whether the file as read back holds the mesh that was made, and keeps the program's promise.

@@ -97,6 +97,18 @@ fn done(pipeline: &Report) -> Vec<String> {
         parts.push(format!("{share} of the rays met a hole or a crack; others decided in their place"));
     }
     parts.push("the surface was built anew".into());
+    if let Some(fit) = &pipeline.fit {
+        let points = words::plural(fit.inserted + fit.moved, "point");
+        let given_up = match fit.given_up {
+            0 => String::new(),
+            n => format!("; {} left as the voxels have them", words::plural(n, "place")),
+        };
+        parts.push(format!("{points} set on edges and corners{given_up}"));
+    }
+    if pipeline.closed_triangles > 0 {
+        let triangles = words::plural(pipeline.closed_triangles, "triangle");
+        parts.push(format!("{triangles} of the result close holes (--map shows them)"));
+    }
     parts
 }
 

@@ -92,6 +92,8 @@ pub struct Facets<'a> {
     /// The triangle across each edge (corner k to the next) and whether it is turned the other
     /// way, or [`NONE`].
     across: Vec<[(u32, bool); 3]>,
+    /// A number for each triangle, or none: simplification keeps different ones apart.
+    classes: Vec<u32>,
 }
 
 impl<'a> Facets<'a> {
@@ -112,7 +114,23 @@ impl<'a> Facets<'a> {
             across[a as usize / 3][a as usize % 3] = (b / 3, turned);
             across[b as usize / 3][b as usize % 3] = (a / 3, turned);
         });
-        Self { mesh, planes, across }
+        Self { mesh, planes, across, classes: Vec::new() }
+    }
+
+    /// With a number for each triangle; simplification keeps apart what has different ones.
+    pub fn with_classes(mut self, classes: Vec<u32>) -> Self {
+        self.classes = classes;
+        self
+    }
+
+    /// Whether there are any classes.
+    pub(super) fn has_classes(&self) -> bool {
+        !self.classes.is_empty()
+    }
+
+    /// The class of a side's triangle.
+    pub(super) fn class(&self, side: Side) -> u32 {
+        self.classes.get(side.facet() as usize).copied().unwrap_or(u32::MAX)
     }
 
     /// The number of source triangles: facets from here on have no extent.

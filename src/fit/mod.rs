@@ -54,6 +54,26 @@ impl Surface {
         any || a.iter().any(|p| b.iter().any(|q| near(p, q) && c.iter().any(|r| near(q, r) && near(p, r))))
     }
 
+    /// The facet that a triangle lies on; `None` where nothing is known.
+    pub fn facet(&self, facets: &Facets<'_>, t: u32) -> Option<u32> {
+        let corners = self.places(t);
+        let centre = corners.iter().map(|c| c.at).sum::<DVec3>() / 3.0;
+        let normal = snap::shape(corners.map(|c| c.at)).0.normalize_or_zero();
+        let known = corners.iter().filter(|c| !c.sides.is_empty()).count();
+        // A facet that all corners with any share is it; else the one that faces the same way.
+        let votes = |side: Side| corners.iter().filter(|c| c.sides.iter().any(|s| s == side)).count() == known;
+        let off = |side: Side| {
+            let plane = facets.plane(side);
+            (!votes(side), 1.0 - plane.normal.dot(normal))
+        };
+        let all = corners.iter().flat_map(|c| c.sides.iter());
+        let best = all.min_by(|p, q| {
+            let (p, q) = (off(*p), off(*q));
+            p.0.cmp(&q.0).then(p.1.total_cmp(&q.1))
+        })?;
+        Some(facets.walk(best, centre).0.facet())
+    }
+
     /// The corners of a triangle.
     fn places(&self, t: u32) -> [Place; 3] {
         self.mesh.triangles[t as usize].map(|v| self.place(v))
@@ -121,7 +141,7 @@ pub struct FitOptions {
 
 impl Default for FitOptions {
     fn default() -> Self {
-        Self { sag: 0.012, tolerance: 0.005 }
+        Self { sag: 0.015, tolerance: 0.003 }
     }
 }
 
@@ -230,7 +250,7 @@ fn simplified(
     if tolerance <= 0.0 {
         return Ok(surface);
     }
-    let mut frozen = vec![false; surface.mesh.positions.len()];
+    let mut frozen = class_borders(&surface, facets);
     for round in 0..6 {
         let simple = simplify::simplify(&surface, facets, h, tolerance, &frozen, progress)?;
         let bad = crate::mesh::intersecting_triangles(&simple.mesh, progress)?;
@@ -253,4 +273,19 @@ fn simplified(
         });
     }
     Ok(surface)
+}
+
+/// The vertices between triangles of different classes.
+fn class_borders(surface: &Surface, facets: &Facets<'_>) -> Vec<bool> {
+    let mut border = vec![false; surface.mesh.positions.len()];
+    if facets.has_classes() {
+        for t in &surface.mesh.triangles {
+            let mut classes = t.iter().flat_map(|&v| surface.sides[v as usize].iter()).map(|s| facets.class(s));
+            let first = classes.next();
+            if classes.any(|class| Some(class) != first) {
+                t.iter().for_each(|&v| border[v as usize] = true);
+            }
+        }
+    }
+    border
 }

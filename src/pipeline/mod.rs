@@ -1,17 +1,21 @@
 //! The pipelines: short functions that read like the drawing in the crate's documentation.
 
+mod colours;
 mod plan;
 mod prepare;
+mod refine;
 mod report;
 mod solid;
 mod stages;
 
+pub use colours::{carry_colours, classes};
 pub use plan::plan;
 pub use report::{LdiReport, Report, StageTime, ThinReport};
 
 use rayon::prelude::*;
 
-use crate::contour::{Contour, ContourOptions, contour};
+use crate::contour::{ContourOptions, contour};
+use crate::fit::{Facets, FitOptions, fit};
 use crate::lattice::Lattice;
 use crate::ldi::{Expression, Spans, ldis, spans};
 use crate::mesh::TriMesh;
@@ -29,6 +33,16 @@ pub enum VoxelSize {
     Length(f64),
 }
 
+impl VoxelSize {
+    /// The spacing, model units, for operands whose common bounding box has this longest side.
+    pub fn spacing(self, longest: f64) -> f64 {
+        match self {
+            Self::Along(count) => longest / f64::from(count),
+            Self::Length(h) => h,
+        }
+    }
+}
+
 /// Options of [`repair`] and [`boolean`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
@@ -42,6 +56,11 @@ pub struct Options {
     pub robust: RobustOptions,
     /// Whether edges that join two faces of one voxel's cube are collapsed after contouring.
     pub collapse: bool,
+    /// Sharp edges and corners, and fewer triangles where the surface is flat; `None`: the contour as it is.
+    pub fit: Option<FitOptions>,
+    /// For each operand a number for each of its triangles, or nothing: simplification keeps apart what
+    /// has different numbers (colours, for instance; see [`classes`]).
+    pub classes: Vec<Vec<u32>>,
     /// Upper bound for the working memory, bytes; `None`: no bound.
     pub max_memory: Option<u64>,
 }
@@ -55,6 +74,8 @@ impl Options {
             rule: VoteRule::default(),
             robust: RobustOptions::default(),
             collapse: true,
+            fit: Some(FitOptions::default()),
+            classes: Vec::new(),
             max_memory: None,
         }
     }
@@ -65,10 +86,26 @@ impl Options {
 pub struct Outcome {
     /// The result; every coordinate is exactly an `f32`, so that any format holds it unchanged.
     pub mesh: TriMesh,
+    /// Where each triangle comes from.
+    pub sources: Vec<TriangleSource>,
     /// The lattice that was used.
     pub lattice: Lattice,
     /// What was found and done.
     pub report: Report,
+}
+
+/// Where a triangle of the result comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TriangleSource {
+    /// It lies on a triangle of an operand.
+    Operand {
+        /// Number of the operand, from 0.
+        operand: u32,
+        /// Number of the triangle in it.
+        triangle: u32,
+    },
+    /// It closes a hole: no triangle of an operand is there.
+    Closed,
 }
 
 /// What a run would cost, before it is run.
@@ -179,39 +216,29 @@ pub fn boolean(
     stages.begin("sdf")?;
     let distance = sdf::robust(&spans, &soup.planes(&lattice), &votes, &options.robust, progress)?;
     stages.begin("contour")?;
-    let crossing = solid::crossings(&spans, &distance);
-    let mut surface = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;
-    if surface.mesh.triangles.is_empty() {
+    let lid = |inside, outside| refine::lid(&winding, expression, inside, outside);
+    let crossing = solid::crossings(&spans, &distance, lid);
+    let mut raw = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;
+    if raw.mesh.triangles.is_empty() {
         return Err(Error::NothingEnclosed { reason: solid::why_nothing(&spans, &lattice, hits, operands.len()) });
     }
-    if options.collapse {
-        stages.begin("collapse")?;
-        let merge = match std::env::var("MERGE").as_deref() {
-            Ok("all") => crate::contour::Merge::All,
-            Ok("none") => crate::contour::Merge::Flat { within: -1.0 },
-            _ => crate::contour::Merge::Flat { within: 0.01 },
-        };
-        let collapsed = solid::collapse(surface, &soup, &lattice, merge, progress)?;
-        if std::env::var("NOFIT").is_err() {
-            stages.begin("fit")?;
-            let facets = crate::fit::Facets::new(&soup.mesh, []);
-            let sides = solid::sides(&collapsed, &facets);
-            let home = crate::fit::Surface { mesh: collapsed.contour.mesh, sides };
-            let tol: f64 = std::env::var("TOL").ok().and_then(|t| t.parse().ok()).unwrap_or(0.005);
-            let sag: f64 = std::env::var("SAG").ok().and_then(|t| t.parse().ok()).unwrap_or(0.012);
-            let o = crate::fit::FitOptions { sag, tolerance: tol };
-            let (sharp, r) = crate::fit::fit(&home, &facets, lattice.h, &o, progress)?;
-            if std::env::var("MW_DEBUG").is_ok() {
-                eprintln!("{r:?}");
-            }
-            surface = Contour { mesh: sharp.mesh, ..Contour::default() };
-        } else {
-            surface = collapsed.contour;
-        }
+    let lids = refine::lids(&mut raw, (&soup, &lattice), &winding, expression, progress)?;
+    stages.begin("collapse")?;
+    let facets = Facets::new(&soup.mesh, lids).with_classes(soup.classes(&options.classes));
+    let mut surface = refine::merged(raw, &facets, &lattice, options, progress)?;
+    let mut fitted = None;
+    if let Some(options) = &options.fit {
+        stages.begin("fit")?;
+        let (sharp, report) = fit(&surface, &facets, lattice.h, options, progress)?;
+        surface = sharp;
+        fitted = Some(report);
     }
 
     let mut report = solid::report(&lattice, &spans, hits, &votes);
-    report.orient = soup.reports;
+    let sources = refine::sources(&surface, &facets, &soup);
+    report.orient = soup.reports.clone();
+    report.fit = fitted;
+    report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
     report.stages = stages.finish();
-    Ok(Outcome { mesh: surface.mesh, lattice, report })
+    Ok(Outcome { mesh: surface.mesh, sources, lattice, report })
 }

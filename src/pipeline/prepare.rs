@@ -22,6 +22,8 @@ pub(super) struct Soup {
     pub patch_of: Vec<u32>,
     pub patch_count: usize,
     pub reports: Vec<OrientReport>,
+    /// For each triangle, its number in the operand as given.
+    pub source: Vec<u32>,
 }
 
 impl Soup {
@@ -50,6 +52,18 @@ impl Soup {
         Ok(())
     }
 
+    /// The numbers that keep triangles apart, for the triangles of the soup; none when no operand has any.
+    pub(super) fn classes(&self, of_operands: &[Vec<u32>]) -> Vec<u32> {
+        if of_operands.iter().all(Vec::is_empty) {
+            return Vec::new();
+        }
+        let class = |t: usize| {
+            let given = of_operands.get(self.operands.of(t as u32));
+            given.and_then(|list| list.get(self.source[t] as usize)).copied().unwrap_or(0)
+        };
+        (0..self.mesh.triangles.len()).map(class).collect()
+    }
+
     /// The planes of the triangles, lattice coordinates.
     pub(super) fn planes(&self, lattice: &Lattice) -> Vec<Plane> {
         let corners = |t: usize| self.mesh.corners(t).map(|p| lattice.to_lattice(p));
@@ -65,6 +79,7 @@ pub(super) fn prepare(inputs: &[TriMesh], mode: OrientMode, progress: &Progress)
         patch_of: Vec::new(),
         patch_count: 0,
         reports: Vec::new(),
+        source: Vec::new(),
     };
     let mut counts = Vec::new();
     for (operand, input) in inputs.iter().enumerate() {
@@ -77,6 +92,7 @@ pub(super) fn prepare(inputs: &[TriMesh], mode: OrientMode, progress: &Progress)
         let mut patches = orient_patches(&mut cleaned.mesh.triangles, &cleaned.unoriented, mode);
         counts.push(cleaned.mesh.triangles.len());
         soup.mesh.append(&cleaned.mesh);
+        soup.source.append(&mut cleaned.source);
         soup.patch_of.extend(patches.of.drain(..).map(|patch| patch + soup.patch_count as u32));
         soup.patch_count += patches.count;
         soup.reports.push(OrientReport {
@@ -103,10 +119,7 @@ pub(super) fn lattice(bounds: &Bounds, voxel: VoxelSize) -> Result<Lattice, Erro
              look for damaged vertices, or scale the model down"
         ));
     }
-    let h = match voxel {
-        VoxelSize::Along(count) => longest / count as f64,
-        VoxelSize::Length(h) => h,
-    };
+    let h = voxel.spacing(longest);
     if !(h > 0.0 && h.is_finite()) {
         return refuse(format!("a voxel size of {h} cannot be used; it must be a positive length"));
     }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::fit::FitReport;
 use crate::orient::OrientReport;
 use crate::vote::VoteReport;
 
@@ -20,6 +21,10 @@ pub struct Report {
     pub vote: VoteReport,
     /// Walls and gaps near or below the voxel size.
     pub thin: ThinReport,
+    /// Sharp edges and simplification; `None` without a fit.
+    pub fit: Option<FitReport>,
+    /// Triangles of the result that close holes.
+    pub closed_triangles: usize,
     /// Wall-clock time of each stage, in order.
     pub stages: Vec<StageTime>,
     /// Sentences a user should read, most important first.

@@ -1,17 +1,12 @@
 //! The small pieces between the stages of a boolean: look-ups, counts, and words.
 
-use glam::DVec3;
-use rayon::prelude::*;
+use glam::IVec3;
 
-use super::prepare::Soup;
 use super::{Error, LdiReport, Report, ThinReport};
-use crate::contour::{Collapsed, Contour, Crossing, ContourVertex, Edge, Merge, NO_TRIANGLE, collapse_same_voxel};
-use crate::fit::{Facets, Side, Sides};
+use crate::contour::{Crossing, Edge, NO_TRIANGLE};
 use crate::lattice::{Grid, Lattice};
 use crate::ldi::{Layers, Lengths, Spans, THIN, edge_crossing, lengths};
-use crate::mesh::Plane;
-use crate::progress::{Progress, Stopped};
-use crate::vote::{Votes, doubts};
+use crate::vote::{Lid, Votes, doubts};
 
 /// Crossings before and after the spans were made.
 #[derive(Debug, Clone, Copy, Default)]
@@ -29,15 +24,21 @@ pub(super) fn count(layers: &[Layers]) -> Count {
     })
 }
 
-/// The crossings of lattice edges for the contour.
+/// The crossings of lattice edges for the contour: with the surface, or with a lid over a hole.
 pub(super) fn crossings<'a>(
     spans: &'a [Spans],
     distance: &'a Grid<f32>,
+    lid: impl Fn(IVec3, IVec3) -> Option<Lid> + Sync + 'a,
 ) -> impl Fn(Edge) -> Option<Crossing> + Sync + 'a {
     move |edge| {
         let lower_inside = distance.get(edge.voxel) < 0.0;
-        let (t, hit) = edge_crossing(spans, edge.voxel, edge.axis as usize, lower_inside)?;
-        Some(Crossing { t, triangle: hit.triangle() })
+        if let Some((t, hit)) = edge_crossing(spans, edge.voxel, edge.axis as usize, lower_inside) {
+            return Some(Crossing { t, triangle: hit.triangle() });
+        }
+        let upper = edge.voxel + IVec3::AXES[edge.axis as usize];
+        let (inside, outside) = if lower_inside { (edge.voxel, upper) } else { (upper, edge.voxel) };
+        let t = lid(inside, outside)?.t;
+        Some(Crossing { t: if lower_inside { t } else { 1.0 - t }, triangle: NO_TRIANGLE })
     }
 }
 
@@ -148,35 +149,4 @@ pub(super) fn why_nothing(spans: &[Spans], lattice: &Lattice, count: Count, oper
         1 => "the surface encloses nothing".into(),
         _ => "the result is empty: the operands have no such part in common".into(),
     }
-}
-
-/// Merges the vertices of each voxel.
-pub(super) fn collapse(
-    contour: Contour,
-    soup: &Soup,
-    lattice: &Lattice,
-    merge: Merge,
-    progress: &Progress,
-) -> Result<Collapsed, Stopped> {
-    let plane = |triangle: u32| {
-        let plane = Plane::through(soup.mesh.corners(triangle as usize));
-        (plane.normal != DVec3::ZERO).then_some((plane.normal, plane.offset))
-    };
-    collapse_same_voxel(contour, lattice, &plane, merge, progress)
-}
-
-/// The facets that the vertices of a merged contour lie on.
-pub(super) fn sides(collapsed: &Collapsed, facets: &Facets<'_>) -> Vec<Sides> {
-    let side = |vertex: &ContourVertex| {
-        if vertex.triangle == NO_TRIANGLE {
-            return Side::NONE;
-        }
-        let normal = facets.plane(Side::new(vertex.triangle, false)).normal;
-        Side::new(vertex.triangle, normal.dot((vertex.outside - vertex.voxel).as_dvec3()) < 0.0)
-    };
-    let members = |v: usize| &collapsed.members[collapsed.starts[v] as usize..collapsed.starts[v + 1] as usize];
-    (0..collapsed.contour.mesh.positions.len())
-        .into_par_iter()
-        .map(|v| Sides::of(members(v).iter().map(|&m| side(&collapsed.raw[m as usize])).filter(|s| s.is_some())))
-        .collect()
 }

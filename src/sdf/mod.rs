@@ -33,6 +33,17 @@ pub fn robust(
     correct(smooth(votes, &estimates, options, progress)?, &estimates, options, progress)
 }
 
+/// Which voxels keep the side of their vote while the field is smoothed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Trust {
+    /// All: for votes that end in the winding number, whose level ½ is a smooth lid over a hole.
+    All,
+    /// Those that are not doubtful and have points beside them; smoothing rounds the others.
+    Sure,
+    /// None, as in the paper: walls of one voxel wear away.
+    Nothing,
+}
+
 /// Options of the robust field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RobustOptions {
@@ -42,14 +53,14 @@ pub struct RobustOptions {
     pub correction_rounds: u32,
     /// Damping of the correction, 0 to 1; the paper's 0.5.
     pub damping: f32,
-    /// Whether voxels the vote is sure of keep their side.
-    pub trust_votes: bool,
+    /// Which voxels keep the side that the vote gave them.
+    pub trust: Trust,
     /// Whether the correction also changes voxels that hold their estimate, as in the paper.
     pub correct_estimates: bool,
 }
 
 impl Default for RobustOptions {
     fn default() -> Self {
-        Self { smoothing_rounds: 15, correction_rounds: 10, damping: 0.5, trust_votes: true, correct_estimates: false }
+        Self { smoothing_rounds: 15, correction_rounds: 10, damping: 0.5, trust: Trust::All, correct_estimates: false }
     }
 }

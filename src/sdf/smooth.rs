@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::RobustOptions;
+use super::{RobustOptions, Trust};
 use super::neighbours::Adjacency;
 use crate::lattice::Grid;
 use crate::progress::{Progress, Stopped};
@@ -21,7 +21,7 @@ const HELD: f32 = 0.05;
 /// Departure: the vote here is an exact test of the voxel itself, so a voxel that the vote is sure
 /// of and that has an estimate keeps its side, and takes the estimate at once where the signs
 /// agree. The paper's rule, under which walls of one voxel wear away, is
-/// [`RobustOptions::trust_votes`] = false.
+/// [`Trust::Nothing`].
 pub fn smooth(
     votes: &Grid<Votes>,
     estimates: &Grid<f32>,
@@ -29,12 +29,12 @@ pub fn smooth(
     progress: &Progress,
 ) -> Result<Grid<f32>, Stopped> {
     let adjacency = Adjacency::new(&votes.bricks);
-    let work = Smoothing { votes, estimates, adjacency: &adjacency, trust_votes: options.trust_votes };
+    let work = Smoothing { votes, estimates, adjacency: &adjacency, trust: options.trust };
     let mut grid = Grid::filled(votes.bricks.clone(), 0.0f32, -FAR, FAR);
     grid.values.par_iter_mut().enumerate().for_each(|(brick, values)| {
         for (n, value) in values.iter_mut().enumerate() {
             *value = if votes.values[brick][n].is_inside { -FAR } else { FAR };
-            if options.trust_votes {
+            if options.trust != Trust::Nothing {
                 *value = work.with_estimate(brick, n, *value);
             }
         }
@@ -69,13 +69,17 @@ struct Smoothing<'a> {
     votes: &'a Grid<Votes>,
     estimates: &'a Grid<f32>,
     adjacency: &'a Adjacency,
-    trust_votes: bool,
+    trust: Trust,
 }
 
 impl Smoothing<'_> {
-    /// The vote is sure of the voxel, and there are points beside it.
+    /// Whether the voxel keeps its side.
     fn is_held(&self, brick: usize, n: usize) -> bool {
-        self.trust_votes && !self.estimates.values[brick][n].is_nan() && !self.votes.values[brick][n].doubtful()
+        match self.trust {
+            Trust::All => true,
+            Trust::Sure => !self.estimates.values[brick][n].is_nan() && !self.votes.values[brick][n].doubtful(),
+            Trust::Nothing => false,
+        }
     }
 
     /// The estimate where it has the sign of `value`, else `value`.

@@ -1,0 +1,114 @@
+//! From the contour to the surface that is returned: facets, merging, fit, and where each face comes from.
+
+use glam::IVec3;
+use rayon::prelude::*;
+
+use super::prepare::Soup;
+use super::{Options, TriangleSource};
+use crate::contour::{Collapsed, Contour, ContourVertex, Merge, NO_TRIANGLE, collapse_same_voxel};
+use crate::fit::{Facets, Side, Sides, Surface};
+use crate::lattice::Lattice;
+use crate::ldi::Expression;
+use crate::mesh::Plane;
+use crate::progress::{Progress, Stopped};
+use crate::vote::{Lid, Winding};
+
+/// Before a fit, vertices of a voxel are merged where they stay this near to their planes, h. Larger ones
+/// (0.02) show in the mean error of curved parts.
+const FLAT: f64 = 0.01;
+
+/// Where the solid ends over a hole, on the lattice edge between two voxels.
+pub(super) fn lid(winding: &Winding<'_>, expression: &Expression, inside: IVec3, outside: IVec3) -> Option<Lid> {
+    // A stop shows again at the next check.
+    winding.crossing(inside, outside, expression).ok().flatten()
+}
+
+/// Gives the contour's vertices that lie over holes a facet of their own each, numbered after the
+/// triangles of the soup: the plane of the lid there. Returns these planes.
+pub(super) fn lids(
+    contour: &mut Contour,
+    (soup, lattice): (&Soup, &Lattice),
+    winding: &Winding<'_>,
+    expression: &Expression,
+    progress: &Progress,
+) -> Result<Vec<Plane>, Stopped> {
+    let bare: Vec<usize> =
+        (0..contour.vertices.len()).filter(|&v| contour.vertices[v].triangle == NO_TRIANGLE).collect();
+    let found = bare.par_iter().map(|&v| {
+        progress.check()?;
+        let ContourVertex { voxel, outside, .. } = contour.vertices[v];
+        Ok(lid(winding, expression, voxel, outside).map(|lid| {
+            let at = lattice.to_model(voxel.as_dvec3().lerp(outside.as_dvec3(), lid.t));
+            (v, Plane { normal: lid.normal, offset: lid.normal.dot(at) })
+        }))
+    });
+    let found: Vec<Option<(usize, Plane)>> = found.collect::<Result<_, Stopped>>()?;
+    if std::env::var("MW_LID").is_ok() {
+        for (k, &v) in bare.iter().enumerate() {
+            let c = contour.vertices[v];
+            let (a, b) = (lattice.to_model(c.voxel.as_dvec3()), lattice.to_model(c.outside.as_dvec3()));
+            eprintln!("LID {} {} {} {} {} {} {}", found[k].is_some() as u8, a.x, a.y, a.z, b.x, b.y, b.z);
+        }
+    }
+    let mut planes = Vec::new();
+    for (v, plane) in found.into_iter().flatten() {
+        contour.vertices[v].triangle = (soup.mesh.triangles.len() + planes.len()) as u32;
+        planes.push(plane);
+    }
+    Ok(planes)
+}
+
+/// Merges the vertices of each voxel and notes the facets that vertices lie on.
+pub(super) fn merged(
+    contour: Contour,
+    facets: &Facets<'_>,
+    lattice: &Lattice,
+    options: &Options,
+    progress: &Progress,
+) -> Result<Surface, Stopped> {
+    let merge = match (options.collapse, options.fit.is_some()) {
+        (false, _) => {
+            let sides = contour.vertices.iter().map(|v| Sides::of([side(v, facets)])).collect();
+            return Ok(Surface { mesh: contour.mesh, sides });
+        }
+        (true, true) => Merge::Flat { within: FLAT },
+        (true, false) => Merge::All,
+    };
+    let plane = |facet: u32| {
+        let plane = facets.plane(Side::new(facet, false));
+        (plane.normal != glam::DVec3::ZERO).then_some((plane.normal, plane.offset))
+    };
+    let collapsed = collapse_same_voxel(contour, lattice, &plane, merge, progress)?;
+    let sides = sides(&collapsed, facets);
+    Ok(Surface { mesh: collapsed.contour.mesh, sides })
+}
+
+/// The side of the facet that a vertex of the raw contour lies on.
+fn side(vertex: &ContourVertex, facets: &Facets<'_>) -> Side {
+    if vertex.triangle == NO_TRIANGLE {
+        return Side::NONE;
+    }
+    let normal = facets.plane(Side::new(vertex.triangle, false)).normal;
+    Side::new(vertex.triangle, normal.dot((vertex.outside - vertex.voxel).as_dvec3()) < 0.0)
+}
+
+/// The facets that the vertices of a merged contour lie on.
+fn sides(collapsed: &Collapsed, facets: &Facets<'_>) -> Vec<Sides> {
+    let members = |v: usize| &collapsed.members[collapsed.starts[v] as usize..collapsed.starts[v + 1] as usize];
+    (0..collapsed.contour.mesh.positions.len())
+        .into_par_iter()
+        .map(|v| Sides::of(members(v).iter().map(|&m| side(&collapsed.raw[m as usize], facets))))
+        .collect()
+}
+
+/// Where the triangles of a surface come from.
+pub(super) fn sources(surface: &Surface, facets: &Facets<'_>, soup: &Soup) -> Vec<TriangleSource> {
+    let source = |t: u32| match surface.facet(facets, t) {
+        Some(facet) if (facet as usize) < soup.mesh.triangles.len() => TriangleSource::Operand {
+            operand: soup.operands.of(facet) as u32,
+            triangle: soup.source[facet as usize],
+        },
+        _ => TriangleSource::Closed,
+    };
+    (0..surface.mesh.triangles.len() as u32).into_par_iter().map(source).collect()
+}
