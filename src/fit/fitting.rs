@@ -1,7 +1,7 @@
 //! What is moved and where is cut, and how to take it back.
 
 use rayon::prelude::*;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::crease::{Crease, SMOOTH, crease};
 use super::cut::{Spared, edges_of};
@@ -40,6 +40,8 @@ pub(super) struct Fitting<'a> {
     /// Triangles of the home surface that are other than when they were last judged; `None` for all that
     /// differ from home.
     dirty: Option<FxHashSet<u32>>,
+    /// How often a triangle was bad with nothing left to take back.
+    times_bad: FxHashMap<u32, u32>,
     snapped: usize,
     given_up: usize,
 }
@@ -67,6 +69,7 @@ impl<'a> Fitting<'a> {
             points,
             spared: Spared::default(),
             dirty: None,
+            times_bad: FxHashMap::default(),
             snapped: snapped.len(),
             given_up: 0,
         }
@@ -93,10 +96,8 @@ impl<'a> Fitting<'a> {
     }
 
     /// Takes back, step by step, what was done at the home triangles `bad`: first vertices
-    /// inside, then cuts, then moves, then all of this around them. False when there is nothing left to
-    /// take back.
-    pub(super) fn undo(&mut self, bad: &[u32], centred: &[u32]) -> bool {
-        let before = (self.points.len(), self.spared.edges.len(), self.spared.triangles.len());
+    /// inside, then cuts, then moves, then all of this around them.
+    pub(super) fn undo(&mut self, bad: &[u32], centred: &[u32], at_once: bool) {
         let is_centred: FxHashSet<u32> = centred.iter().copied().collect();
         let is_cut: FxHashSet<[u32; 2]> = self.points.iter().map(|p| p.0).collect();
         let mut dirty: FxHashSet<u32> = bad.iter().copied().collect();
@@ -104,19 +105,33 @@ impl<'a> Fitting<'a> {
         for &t in bad {
             let ids = self.home.mesh.triangles[t as usize];
             self.given_up += 1;
-            if is_centred.contains(&t) && self.spared.triangles.insert(t) {
+            if is_centred.contains(&t) && self.spared.triangles.insert(t) && !at_once {
                 continue;
             }
             let cut: Vec<[u32; 2]> = edges_of(&ids).into_iter().filter(|e| is_cut.contains(e)).collect();
             if !cut.is_empty() {
                 self.spared.edges.extend(&cut);
                 cut.iter().for_each(|e| dirty.extend(self.around.of(e[0]).iter().filter(|t| self.around.of(e[1]).contains(t))));
-            } else if ids.iter().any(|&v| self.moved[v as usize]) {
+            }
+            if !cut.is_empty() && !at_once {
+                continue;
+            }
+            if ids.iter().any(|&v| self.moved[v as usize]) {
                 back.extend(ids);
             } else {
-                for &near in ids.iter().flat_map(|&v| self.around.of(v)) {
-                    let ids = self.home.mesh.triangles[near as usize];
-                    self.spared.triangles.insert(near);
+                // What is wrong here comes from beside it: wider each time.
+                let rings = self.times_bad.entry(t).or_insert(0);
+                *rings += 1;
+                let mut near: Vec<u32> = vec![t];
+                for _ in 0..*rings {
+                    let corners = near.iter().flat_map(|&t| self.home.mesh.triangles[t as usize]);
+                    near = corners.flat_map(|v| self.around.of(v)).copied().collect();
+                    near.sort_unstable();
+                    near.dedup();
+                }
+                for t in near {
+                    let ids = self.home.mesh.triangles[t as usize];
+                    self.spared.triangles.insert(t);
                     self.spared.edges.extend(edges_of(&ids));
                     back.extend(ids);
                 }
@@ -134,9 +149,7 @@ impl<'a> Fitting<'a> {
         self.points.extend(new);
         self.points.par_sort_unstable_by_key(|p| p.0);
         self.dirty = Some(dirty);
-        let moved_back = back.iter().any(|&v| self.moved[v as usize]);
         back.iter().for_each(|&v| self.moved[v as usize] = false);
-        moved_back || before != (self.points.len(), self.spared.edges.len(), self.spared.triangles.len())
     }
 
     /// What was done.

@@ -53,10 +53,21 @@ pub(super) fn meeting(mesh: &TriMesh, h: f64, changed: &[u32], progress: &Progre
         })
     };
     let touched: FxHashSet<IVec3> = changed.iter().flat_map(|&t| blocks(t as usize)).collect();
-    let near: Vec<u32> = (0..mesh.triangles.len() as u32)
-        .into_par_iter()
-        .filter(|&t| blocks(t as usize).any(|b| touched.contains(&b)))
-        .collect();
+    // Most triangles span two blocks a side at most: one look from their lowest block.
+    let steps = || (0..8).map(|k| IVec3::new(k & 1, k >> 1 & 1, k >> 2));
+    let below: FxHashSet<IVec3> = touched.iter().flat_map(|&b| steps().map(move |s| b - s)).collect();
+    let is_near = |t: usize| {
+        let corners = mesh.corners(t);
+        let low = block(corners[0].min(corners[1]).min(corners[2]));
+        let high = block(corners[0].max(corners[1]).max(corners[2]));
+        match (high - low).max_element() {
+            0 => touched.contains(&low),
+            1 => below.contains(&low),
+            _ => blocks(t).any(|b| touched.contains(&b)),
+        }
+    };
+    let near: Vec<u32> =
+        (0..mesh.triangles.len() as u32).into_par_iter().filter(|&t| is_near(t as usize)).collect();
     let part = TriMesh {
         positions: mesh.positions.clone(),
         triangles: near.iter().map(|&t| mesh.triangles[t as usize]).collect(),

@@ -7,7 +7,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Surface;
+use super::{Surface, agreement};
 use super::facets::Facets;
 use super::quadric::Quadric;
 use super::snap::shape;
@@ -29,6 +29,9 @@ const ON_FACET: f64 = 1e-3;
 
 /// Triangles lower than this, h, have no plane of their own.
 const FLAT_HEIGHT: f64 = 0.02;
+
+/// Cosine of the most that a triangle over a crease may turn in one collapse.
+const STILL_FACING: f64 = 0.3;
 
 /// Passes after which the rest stays.
 const MOST_PASSES: usize = 200;
@@ -65,16 +68,11 @@ pub(super) fn simplify(
     let Ok(edges) = HalfEdges::new(&surface.mesh.triangles, surface.mesh.positions.len()) else {
         return Ok(surface.clone());
     };
-    let debug = std::env::var("MW_DEBUG").is_ok();
-    let start = std::time::Instant::now();
     let at: Vec<DVec3> = surface.mesh.positions.par_iter().map(|p| *p / h).collect();
     let quadrics = quadrics(surface, facets, h, &edges);
     let mut work = Work { surface, facets, edges, quadrics, at, most: tolerance * tolerance };
     let mut active: Vec<u32> = (0..work.at.len() as u32).filter(|&v| !frozen[v as usize]).collect();
     let mut locked = vec![0u32; work.at.len()];
-    if debug {
-        eprintln!("simplify: set up {:?}", start.elapsed());
-    }
     for pass in 1..=MOST_PASSES as u32 {
         progress.check()?;
         let mut wishes: Vec<Wish> = active.par_iter().with_min_len(64).filter_map(|&v| work.wish(v)).collect();
@@ -93,9 +91,6 @@ pub(super) fn simplify(
                 ring.iter().for_each(|&v| locked[v as usize] = pass);
                 next.extend(ring);
             }
-        }
-        if debug && (pass < 4 || pass % 10 == 0 || done == 0) {
-            eprintln!("pass {pass}: {} active, {} wishes, {done} done, {:?}", active.len(), wishes.len(), start.elapsed());
         }
         if done == 0 {
             break;
@@ -189,9 +184,18 @@ impl Work<'_> {
             let before = self.edges.triangle(e / 3);
             let after = before.map(|v| if v == vertex { to } else { v });
             let (turned, low) = self.turn(after, before);
-            turned <= turn && low >= height
+            low >= height && (turned <= turn || self.cuts_off(after, before))
         });
         fine && self.edges.can_collapse(half_edge)
+    }
+
+    /// Whether a triangle cuts off a crease, as it did before, and still faces the same way: it may turn as it
+    /// likes, for the crease will be put back.
+    fn cuts_off(&self, t: [u32; 3], before: [u32; 3]) -> bool {
+        let places = |t: [u32; 3]| t.map(|v| self.surface.place(v));
+        let normal = |t: [u32; 3]| shape(t.map(|v| self.at[v as usize])).0.normalize_or_zero();
+        let apart = |t: [u32; 3]| t.iter().all(|&v| !self.surface.sides[v as usize].is_empty()) && agreement(self.facets, &places(t)).is_none();
+        normal(t).dot(normal(before)) > STILL_FACING && apart(before) && apart(t)
     }
 
     /// By how much a triangle faces away from the facets of its corners: for each corner the facet

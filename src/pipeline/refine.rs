@@ -43,13 +43,6 @@ pub(super) fn lids(
         }))
     });
     let found: Vec<Option<(usize, Plane)>> = found.collect::<Result<_, Stopped>>()?;
-    if std::env::var("MW_LID").is_ok() {
-        for (k, &v) in bare.iter().enumerate() {
-            let c = contour.vertices[v];
-            let (a, b) = (lattice.to_model(c.voxel.as_dvec3()), lattice.to_model(c.outside.as_dvec3()));
-            eprintln!("LID {} {} {} {} {} {} {}", found[k].is_some() as u8, a.x, a.y, a.z, b.x, b.y, b.z);
-        }
-    }
     let mut planes = Vec::new();
     for (v, plane) in found.into_iter().flatten() {
         contour.vertices[v].triangle = (soup.mesh.triangles.len() + planes.len()) as u32;
