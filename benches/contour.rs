@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use divan::Bencher;
 use glam::{DVec3, IVec3};
-use meshwright::contour::{Contour, ContourOptions, Crossing, Edge, collapse_same_voxel, contour};
+use meshwright::contour::{Contour, ContourOptions, Crossing, Edge, Merge, collapse_same_voxel, contour};
 use meshwright::lattice::{Bricks, Grid, Lattice};
 use meshwright::progress::Progress;
 use rustc_hash::FxHashMap;
@@ -92,5 +92,5 @@ fn collapse(bencher: Bencher<'_, '_>) {
     let planes = |triangle: u32| scene.planes.get(triangle as usize).copied();
     bencher
         .with_inputs(|| scene.contour())
-        .bench_values(|raw| collapse_same_voxel(raw, &scene.lattice, &planes, &Progress::none()).unwrap());
+        .bench_values(|raw| collapse_same_voxel(raw, &scene.lattice, &planes, Merge::All, &Progress::none()).unwrap());
 }

@@ -17,7 +17,7 @@ use meshwright::ldi::{Expression, Operands, ldis, spans};
 use meshwright::mesh::{Plane, TriMesh};
 use meshwright::pipeline::{Options, VoxelSize, repair};
 use meshwright::progress::Progress;
-use meshwright::sdf::{RobustOptions, robust};
+use meshwright::sdf::{RobustOptions, Trust, robust};
 use meshwright::vote::{Jury, VoteRule, Winding, WindingTree, vote_near_surface, voxel_in_brick};
 use rayon::prelude::*;
 

@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use contour_support::{Case, enclosed, fault, noise};
 use glam::{DVec3, IVec3};
-use meshwright::contour::{Collapsed, Contour, ContourOptions, Crossing, Edge, collapse_same_voxel, contour};
+use meshwright::contour::{Collapsed, Contour, ContourOptions, Crossing, Edge, Merge, collapse_same_voxel, contour};
 use meshwright::lattice::Slot;
 use meshwright::mesh::TriMesh;
 use meshwright::progress::{Progress, Stopped};
@@ -131,7 +131,7 @@ fn the_collapse_brings_the_edges_of_a_box_back() {
     };
     let raw = contour(&case.lattice, &case.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap();
     let rounded = enclosed(&raw.mesh) / case.lattice.h.powi(3);
-    let solid = collapse_same_voxel(raw, &case.lattice, &planes, &Progress::none()).unwrap();
+    let solid = collapse_same_voxel(raw, &case.lattice, &planes, Merge::All, &Progress::none()).unwrap();
     assert_eq!(fault(&solid.contour.mesh), None);
     assert_eq!((solid.merged, solid.kept_apart), (4 * (15 + 11 + 28) - 16, 0));
     let volume = enclosed(&solid.contour.mesh) / case.lattice.h.powi(3);
@@ -146,7 +146,7 @@ fn a_cancelled_contour_stops() {
     let stopped = contour(&case.lattice, &case.distance, &|_| None, &ContourOptions::default(), &progress);
     assert_eq!(stopped, Err(Stopped::Interrupted));
     let planes = |_| None;
-    let stopped = collapse_same_voxel(case.contour(), &case.lattice, &planes, &progress);
+    let stopped = collapse_same_voxel(case.contour(), &case.lattice, &planes, Merge::All, &progress);
     assert_eq!(stopped, Err(Stopped::Interrupted));
 }
 

@@ -11,7 +11,7 @@ use meshwright::lattice::{BRICK, Grid, Lattice};
 use meshwright::ldi::Spans;
 use meshwright::mesh::{Plane, TriMesh};
 use meshwright::progress::Progress;
-use meshwright::sdf::{RobustOptions, correct, estimate, march, robust, smooth};
+use meshwright::sdf::{RobustOptions, Trust, correct, estimate, march, robust, smooth};
 use meshwright::vote::{VoteRule, Votes, vote_near_surface, voxel_in_brick};
 
 fn field(spans: &[Spans], planes: &[Plane], votes: &Grid<Votes>, options: &RobustOptions) -> Grid<f32> {

@@ -87,7 +87,8 @@ pub enum QuantityError {
     },
 }
 
-const A_LENGTH: &str = "a length such as 0.4mm, 1in, 1% (of the bounding box diagonal), 2h (voxels) or 0.4 (in the file's units)";
+const A_LENGTH: &str =
+    "a length such as 0.4mm, 1in, 1% (of the bounding box diagonal), 2h (voxels) or 0.4 (in the file's units)";
 const A_SIZE: &str = "a size such as 500M, 2G or 1500000";
 const A_DURATION: &str = "a duration such as 30s, 5m or 1h";
 

@@ -16,9 +16,9 @@ use crate::fit::FitOptions;
 use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
+use crate::pipeline::{self, Options, Outcome, TriangleSource, VoxelSize};
 use crate::sdf::{RobustOptions, Trust};
 use crate::vote::VoteRule;
-use crate::pipeline::{self, Options, Outcome, TriangleSource, VoxelSize};
 
 /// Meshes and what is to be made of them.
 pub struct Job<'a> {
@@ -178,9 +178,11 @@ fn make(
     report.pipeline = Some(outcome.report.clone());
     let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
     let colours = pipeline::carry_colours(&outcome, &operands);
-    report.warnings.extend(colours.as_ref().and_then(|colours| {
-        super::convert::lost_colours(colours, &outcome.mesh, target.options.format)
-    }));
+    report.warnings.extend(
+        colours
+            .as_ref()
+            .and_then(|colours| super::convert::lost_colours(colours, &outcome.mesh, target.options.format)),
+    );
     let (entry, validity) = report.timed("write and verify", |_| {
         write_verified(target, &outcome.mesh, colours.as_ref(), session, |read| judge(read, &outcome.mesh, session))
     })?;

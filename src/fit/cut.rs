@@ -9,10 +9,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::Surface;
 use super::crease::{Crease, FLAT, Place, crease, nearest};
 use super::facets::{Facets, Sides};
-use super::snap::shape;
+use super::surface::{Surface, rounded, shape};
 
 /// A corner nearer to a point of a crease than this, h, is that point.
 const SAME: f64 = 0.02;
@@ -92,7 +91,7 @@ fn subdivide(cut: &mut Cut, points: &[([u32; 2], Crease)]) {
     let Cut { surface: Surface { mesh, sides }, origin, .. } = cut;
     let first = mesh.positions.len() as u32;
     let ids: FxHashMap<[u32; 2], u32> = points.iter().zip(first..).map(|(&(edge, _), id)| (edge, id)).collect();
-    mesh.positions.extend(points.iter().map(|(_, c)| super::rounded(c.place.at)));
+    mesh.positions.extend(points.iter().map(|(_, c)| rounded(c.place.at)));
     sides.extend(points.iter().map(|(_, c)| c.place.sides));
     let on = |a: u32, b: u32| ids.get(&[a.min(b), a.max(b)]).copied();
     let cuts_of = |&[a, b, c]: &[u32; 3]| {
@@ -124,7 +123,7 @@ fn raise_corners(cut: &mut Cut, facets: &Facets<'_>, h: f64, spared: &Spared) {
     for (t, place) in found {
         let [a, b, c] = cut.surface.mesh.triangles[t as usize];
         let z = cut.surface.mesh.positions.len() as u32;
-        cut.surface.mesh.positions.push(super::rounded(place.at));
+        cut.surface.mesh.positions.push(rounded(place.at));
         cut.surface.sides.push(place.sides);
         cut.surface.mesh.triangles[t as usize] = [a, b, z];
         cut.surface.mesh.triangles.extend([[b, c, z], [c, a, z]]);

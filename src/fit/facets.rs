@@ -101,8 +101,7 @@ impl<'a> Facets<'a> {
     /// source.
     pub fn new(mesh: &'a TriMesh, lids: impl IntoIterator<Item = Plane>) -> Self {
         let count = mesh.triangles.len();
-        let mut planes: Vec<Plane> =
-            (0..count).into_par_iter().map(|t| Plane::through(mesh.corners(t))).collect();
+        let mut planes: Vec<Plane> = (0..count).into_par_iter().map(|t| Plane::through(mesh.corners(t))).collect();
         planes.extend(lids);
         let mut across = vec![[(NONE, false); 3]; count];
         let edges = Edges::new(&mesh.triangles, mesh.positions.len());

@@ -6,7 +6,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::crease::{Crease, SMOOTH, crease};
 use super::cut::{Spared, edges_of};
 use super::facets::Facets;
-use super::{Around, FitOptions, FitReport, Surface, rounded, snap};
+use super::snap::snap;
+use super::surface::{Around, Surface, rounded};
+use super::{FitOptions, FitReport};
 
 /// A sharp crease nearer to the surface than this, h, is left out.
 const SHARP_SAG: f64 = 0.002;
@@ -54,7 +56,7 @@ impl<'a> Fitting<'a> {
         let mut moved = vec![false; home.mesh.positions.len()];
         flatten(&mut surface, facets, h).into_iter().for_each(|v| moved[v as usize] = true);
         let edges = straddling(&surface, facets);
-        let snapped = snap::snap(&mut surface, facets, h, &edges, &around);
+        let snapped = snap(&mut surface, facets, h, &edges, &around);
         snapped.iter().for_each(|&v| moved[v as usize] = true);
         let points = creases(&surface, facets, h, options, edges.par_iter().copied());
         Self {
@@ -111,7 +113,9 @@ impl<'a> Fitting<'a> {
             let cut: Vec<[u32; 2]> = edges_of(&ids).into_iter().filter(|e| is_cut.contains(e)).collect();
             if !cut.is_empty() {
                 self.spared.edges.extend(&cut);
-                cut.iter().for_each(|e| dirty.extend(self.around.of(e[0]).iter().filter(|t| self.around.of(e[1]).contains(t))));
+                cut.iter().for_each(|e| {
+                    dirty.extend(self.around.of(e[0]).iter().filter(|t| self.around.of(e[1]).contains(t)))
+                });
             }
             if !cut.is_empty() && !at_once {
                 continue;
@@ -178,10 +182,12 @@ fn flatten(surface: &mut Surface, facets: &Facets<'_>, h: f64) -> Vec<u32> {
 fn straddling(surface: &Surface, facets: &Facets<'_>) -> Vec<[u32; 2]> {
     let differ = |a: u32, b: u32| {
         let (x, y) = (surface.sides[a as usize], surface.sides[b as usize]);
-        !x.is_empty() && !y.is_empty() && x.iter().all(|p| {
-            let p = facets.plane(p).normal;
-            y.iter().all(|q| p.dot(facets.plane(q).normal) < 0.9986)
-        })
+        !x.is_empty()
+            && !y.is_empty()
+            && x.iter().all(|p| {
+                let p = facets.plane(p).normal;
+                y.iter().all(|q| p.dot(facets.plane(q).normal) < 0.9986)
+            })
     };
     let edges = surface.mesh.triangles.par_iter().flat_map_iter(|&t| {
         [0, 1, 2].into_iter().map(move |k| [t[k], t[(k + 1) % 3]]).filter(|[a, b]| a < b && differ(*a, *b))
@@ -205,4 +211,3 @@ fn creases(
     found.par_sort_unstable_by_key(|p| p.0);
     found
 }
-

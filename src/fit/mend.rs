@@ -7,11 +7,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::crease::{Place, nearest};
+use super::crease::{Place, SMOOTH, nearest};
 use super::cut::Cut;
 use super::facets::{Facets, Sides};
-use super::snap::shape;
-use super::{SMOOTH, agreement};
+use super::surface::{agreement, rounded, shape};
 use crate::mesh::HalfEdges;
 
 /// The least height, h, of the triangles that it makes.
@@ -120,10 +119,11 @@ impl Mending<'_> {
             }
             let before: Vec<bool> = self.edges.ring(v).map(|e| self.fits(self.edges.triangle(e / 3))).collect();
             let ends = (0..neighbours.len()).flat_map(|i| (0..i).map(move |j| [i, j]));
-            let between = ends.flat_map(|[i, j]| SHARES.map(|s| self.at(neighbours[i]).lerp(self.at(neighbours[j]), s)));
+            let between =
+                ends.flat_map(|[i, j]| SHARES.map(|s| self.at(neighbours[i]).lerp(self.at(neighbours[j]), s)));
             for target in between.collect::<Vec<_>>() {
                 let Some(at) = nearest(own.sides.iter().map(|s| self.facets.plane(s)), target) else { continue };
-                self.cut.surface.put(v, Place { at: super::rounded(at), ..own });
+                self.cut.surface.put(v, Place { at: rounded(at), ..own });
                 let now = self.edges.ring(v).map(|e| self.fits(self.edges.triangle(e / 3)));
                 if betters(before.iter().copied().zip(now)) {
                     return self.edges.ring(v).map(|e| e / 3).collect();
@@ -144,7 +144,8 @@ impl Mending<'_> {
     fn turn_fits(&self, e: u32) -> bool {
         let (a, b) = (self.edges.origin(e), self.edges.target(e));
         let (c, d) = (self.edges.apex(e), self.edges.apex(self.edges.twin(e)));
-        let known = |t: [u32; 3]| agreement(self.facets, &t.map(|v| self.cut.surface.place(v))).is_some_and(|a| a > 0.5);
+        let known =
+            |t: [u32; 3]| agreement(self.facets, &t.map(|v| self.cut.surface.place(v))).is_some_and(|a| a > 0.5);
         [[a, d, c], [d, b, c]].into_iter().all(|t| self.fits(t) && known(t)) && self.edges.can_flip(e)
     }
 

@@ -4,9 +4,8 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-use super::{Surface, agreement};
 use super::facets::Facets;
-use super::snap::shape;
+use super::surface::{Surface, agreement, shape};
 use crate::mesh::{TriMesh, intersecting_triangles};
 use crate::progress::{Progress, Stopped};
 
@@ -48,9 +47,8 @@ pub(super) fn meeting(mesh: &TriMesh, h: f64, changed: &[u32], progress: &Progre
         let low = block(corners[0].min(corners[1]).min(corners[2]));
         let high = block(corners[0].max(corners[1]).max(corners[2]));
         let steps = high - low + 1;
-        (0..steps.x * steps.y * steps.z).map(move |k| {
-            low + IVec3::new(k % steps.x, k / steps.x % steps.y, k / (steps.x * steps.y))
-        })
+        (0..steps.x * steps.y * steps.z)
+            .map(move |k| low + IVec3::new(k % steps.x, k / steps.x % steps.y, k / (steps.x * steps.y)))
     };
     let touched: FxHashSet<IVec3> = changed.iter().flat_map(|&t| blocks(t as usize)).collect();
     // Most triangles span two blocks a side at most: one look from their lowest block.
@@ -66,8 +64,7 @@ pub(super) fn meeting(mesh: &TriMesh, h: f64, changed: &[u32], progress: &Progre
             _ => blocks(t).any(|b| touched.contains(&b)),
         }
     };
-    let near: Vec<u32> =
-        (0..mesh.triangles.len() as u32).into_par_iter().filter(|&t| is_near(t as usize)).collect();
+    let near: Vec<u32> = (0..mesh.triangles.len() as u32).into_par_iter().filter(|&t| is_near(t as usize)).collect();
     let part = TriMesh {
         positions: mesh.positions.clone(),
         triangles: near.iter().map(|&t| mesh.triangles[t as usize]).collect(),

@@ -7,11 +7,10 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{Surface, agreement};
 use super::facets::Facets;
 use super::quadric::Quadric;
-use super::snap::shape;
-use crate::mesh::{HalfEdges, TriMesh};
+use super::surface::{Surface, agreement, shape};
+use crate::mesh::{HalfEdges, TriMesh, ValidateOptions, intersecting_triangles, validate};
 use crate::progress::{Progress, Stopped};
 
 /// By how much a triangle may turn away from the facets of its corners (one minus the cosine,
@@ -32,6 +31,9 @@ const FLAT_HEIGHT: f64 = 0.02;
 
 /// Cosine of the most that a triangle over a crease may turn in one collapse.
 const STILL_FACING: f64 = 0.3;
+
+/// Times that neighbourhoods are frozen, each time twice as far.
+const MOST_ROUNDS: u32 = 6;
 
 /// Passes after which the rest stays.
 const MOST_PASSES: usize = 200;
@@ -56,8 +58,64 @@ struct Wish {
     half_edge: u32,
 }
 
+/// [`collapsed`] within `tolerance` (h; 0 for not at all) as often as it takes until no triangles meet:
+/// each time the neighbourhoods of those that do stay as they were. `None` when the surface as given is
+/// no valid solid.
+pub(super) fn simplified(
+    surface: &Surface,
+    facets: &Facets<'_>,
+    h: f64,
+    tolerance: f64,
+    progress: &Progress,
+) -> Result<Option<Surface>, Stopped> {
+    let mut frozen = class_borders(surface, facets);
+    if tolerance > 0.0 {
+        for round in 0..MOST_ROUNDS {
+            let simple = collapsed(surface, facets, h, tolerance, &frozen, progress)?;
+            let bad = intersecting_triangles(&simple.mesh, progress)?;
+            if bad.is_empty() && is_solid(&simple.mesh, false, progress)? {
+                return Ok(Some(simple));
+            }
+            freeze(&mut frozen, surface, &simple, &bad, 2.0 * h * f64::from(1 << round));
+        }
+    }
+    Ok(is_solid(&surface.mesh, true, progress)?.then(|| surface.clone()))
+}
+
+/// Whether the mesh is valid, also in a format that merges equal positions.
+fn is_solid(mesh: &TriMesh, self_intersections: bool, progress: &Progress) -> Result<bool, Stopped> {
+    Ok(validate(mesh, &ValidateOptions { self_intersections, weld: true }, progress)?.is_valid())
+}
+
+/// Freezes the vertices within `reach` of the boxes of triangles `bad` of the simplified surface.
+fn freeze(frozen: &mut [bool], surface: &Surface, simple: &Surface, bad: &[u32], reach: f64) {
+    let around = |&t: &u32| {
+        let [a, b, c] = simple.mesh.corners(t as usize);
+        (a.min(b).min(c) - reach, a.max(b).max(c) + reach)
+    };
+    let boxes: Vec<(DVec3, DVec3)> = bad.iter().map(around).collect();
+    frozen.par_iter_mut().zip(&surface.mesh.positions).for_each(|(frozen, p)| {
+        *frozen |= boxes.iter().any(|(low, high)| p.cmpge(*low).all() && p.cmple(*high).all());
+    });
+}
+
+/// The vertices between triangles of different classes.
+fn class_borders(surface: &Surface, facets: &Facets<'_>) -> Vec<bool> {
+    let mut border = vec![false; surface.mesh.positions.len()];
+    if facets.has_classes() {
+        for t in &surface.mesh.triangles {
+            let mut classes = t.iter().flat_map(|&v| surface.sides[v as usize].iter()).map(|s| facets.class(s));
+            let first = classes.next();
+            if classes.any(|class| Some(class) != first) {
+                t.iter().for_each(|&v| border[v as usize] = true);
+            }
+        }
+    }
+    border
+}
+
 /// Collapses edges as long as the surface stays within `tolerance` (h) of where it was. Vertices in `frozen` stay.
-pub(super) fn simplify(
+fn collapsed(
     surface: &Surface,
     facets: &Facets<'_>,
     h: f64,
@@ -194,7 +252,10 @@ impl Work<'_> {
     fn cuts_off(&self, t: [u32; 3], before: [u32; 3]) -> bool {
         let places = |t: [u32; 3]| t.map(|v| self.surface.place(v));
         let normal = |t: [u32; 3]| shape(t.map(|v| self.at[v as usize])).0.normalize_or_zero();
-        let apart = |t: [u32; 3]| t.iter().all(|&v| !self.surface.sides[v as usize].is_empty()) && agreement(self.facets, &places(t)).is_none();
+        let apart = |t: [u32; 3]| {
+            t.iter().all(|&v| !self.surface.sides[v as usize].is_empty())
+                && agreement(self.facets, &places(t)).is_none()
+        };
         normal(t).dot(normal(before)) > STILL_FACING && apart(before) && apart(t)
     }
 

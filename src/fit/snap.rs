@@ -1,11 +1,10 @@
 //! Vertices that lie beside a crease move onto it, so that no slivers are left beside it.
 
-use glam::DVec3;
 use rayon::prelude::*;
 
-use super::{Surface, agreement};
 use super::crease::{Crease, Place, SMOOTH, crease, nearest};
 use super::facets::{Facets, Sides};
+use super::surface::{Around, Surface, agreement, rounded, shape};
 
 /// Vertices nearer to a crease than this, h, move onto it.
 const NEAR: f64 = 0.3;
@@ -23,7 +22,7 @@ pub(super) fn snap(
     facets: &Facets<'_>,
     h: f64,
     edges: &[[u32; 2]],
-    around: &super::Around,
+    around: &Around,
 ) -> Vec<u32> {
     let mut ends: Vec<[u32; 2]> = edges.iter().flat_map(|&[a, b]| [[a, b], [b, a]]).collect();
     ends.par_sort_unstable();
@@ -45,7 +44,7 @@ pub(super) fn snap(
         let old = surface.place(vertex);
         let fits = |surface: &Surface| around.of(vertex).iter().all(|&t| parts_fit(surface, facets, h, t));
         let taken = places.into_iter().any(|place| {
-            surface.put(vertex, Place { at: super::rounded(place.at), ..place });
+            surface.put(vertex, Place { at: rounded(place.at), ..place });
             fits(surface)
         });
         if taken {
@@ -112,11 +111,4 @@ fn parts_fit(surface: &Surface, facets: &Facets<'_>, h: f64, t: u32) -> bool {
         }
     }
     cuts[0].is_some() || fits([a, b, c])
-}
-
-/// Twice the area as a vector, and the smallest height.
-pub(super) fn shape([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
-    let normal = (b - a).cross(c - a);
-    let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared()).sqrt();
-    (normal, normal.length() / longest)
 }

@@ -97,10 +97,9 @@ fn sides(collapsed: &Collapsed, facets: &Facets<'_>) -> Vec<Sides> {
 /// Where the triangles of a surface come from.
 pub(super) fn sources(surface: &Surface, facets: &Facets<'_>, soup: &Soup) -> Vec<TriangleSource> {
     let source = |t: u32| match surface.facet(facets, t) {
-        Some(facet) if (facet as usize) < soup.mesh.triangles.len() => TriangleSource::Operand {
-            operand: soup.operands.of(facet) as u32,
-            triangle: soup.source[facet as usize],
-        },
+        Some(facet) if (facet as usize) < soup.mesh.triangles.len() => {
+            TriangleSource::Operand { operand: soup.operands.of(facet) as u32, triangle: soup.source[facet as usize] }
+        }
         _ => TriangleSource::Closed,
     };
     (0..surface.mesh.triangles.len() as u32).into_par_iter().map(source).collect()

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::{RobustOptions, Trust};
 use super::neighbours::Adjacency;
+use super::{RobustOptions, Trust};
 use crate::lattice::Grid;
 use crate::progress::{Progress, Stopped};
 use crate::vote::Votes;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::{DVec3, IVec3};
-use meshwright::contour::{Collapsed, Contour, ContourOptions, Crossing, Edge, collapse_same_voxel, contour};
+use meshwright::contour::{Collapsed, Contour, ContourOptions, Crossing, Edge, Merge, collapse_same_voxel, contour};
 use meshwright::lattice::{Bricks, Grid, Lattice, brick_of, index_in_brick};
 use meshwright::mesh::{TriMesh, ValidateOptions, validate};
 use meshwright::progress::Progress;
@@ -87,7 +87,7 @@ impl Case {
             let centre = self.lattice.to_model(self.lattice.dims.as_dvec3() * n[3]);
             (!triangle.is_multiple_of(5)).then_some((normal, normal.dot(centre)))
         };
-        collapse_same_voxel(raw, &self.lattice, &planes, &Progress::none()).unwrap()
+        collapse_same_voxel(raw, &self.lattice, &planes, Merge::All, &Progress::none()).unwrap()
     }
 }
 
