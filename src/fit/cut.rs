@@ -54,7 +54,7 @@ pub(super) fn cut(
     let touched = cut.surface.mesh.triangles.iter().zip(&cut.origin).filter(|(t, _)| has_cut(t));
     cut.centred = touched.map(|(_, &origin)| origin).collect();
     subdivide(&mut cut, &again);
-    raise_corners(&mut cut, facets, h, spared);
+    raise_corners(&mut cut, facets, h, first, spared);
     cut
 }
 
@@ -113,26 +113,34 @@ fn subdivide(cut: &mut Cut, points: &[([u32; 2], Crease)]) {
 }
 
 /// Puts a vertex into triangles whose corners lie on creases that meet in a corner not yet there.
-fn raise_corners(cut: &mut Cut, facets: &Facets<'_>, h: f64, spared: &Spared) {
+fn raise_corners(cut: &mut Cut, facets: &Facets<'_>, h: f64, first: u32, spared: &Spared) {
     let surface = &cut.surface;
     let found: Vec<(u32, Place)> = (0..surface.mesh.triangles.len() as u32)
         .into_par_iter()
         .filter(|&t| !surface.is_smooth(facets, t) && !spared.triangles.contains(&cut.origin[t as usize]))
-        .filter_map(|t| Some((t, corner(facets, h, surface.mesh.triangles[t as usize].map(|v| surface.place(v)))?)))
+        .filter_map(|t| Some((t, corner(facets, h, surface.places(t))?)))
         .collect();
     for (t, place) in found {
-        let [a, b, c] = cut.surface.mesh.triangles[t as usize];
-        let z = cut.surface.mesh.positions.len() as u32;
-        cut.surface.mesh.positions.push(rounded(place.at));
-        cut.surface.sides.push(place.sides);
-        cut.surface.mesh.triangles[t as usize] = [a, b, z];
-        cut.surface.mesh.triangles.extend([[b, c, z], [c, a, z]]);
+        let corners = cut.surface.mesh.triangles[t as usize];
+        let place = Place { at: rounded(place.at), ..place };
+        match corners.into_iter().find(|&v| cut.surface.at(v).distance(place.at) < SAME * h) {
+            // A point inserted that close is meant to be the corner.
+            Some(v) if v >= first => cut.surface.put(v, place),
+            Some(_) => continue,
+            None => {
+                let ([a, b, c], z) = (corners, cut.surface.mesh.positions.len() as u32);
+                cut.surface.mesh.positions.push(place.at);
+                cut.surface.sides.push(place.sides);
+                cut.surface.mesh.triangles[t as usize] = [a, b, z];
+                cut.surface.mesh.triangles.extend([[b, c, z], [c, a, z]]);
+                cut.origin.extend([cut.origin[t as usize]; 2]);
+            }
+        }
         cut.centred.push(cut.origin[t as usize]);
-        cut.origin.extend([cut.origin[t as usize]; 2]);
     }
 }
 
-/// The corner in which the creases through three points meet, if it is another point.
+/// The corner in which the creases through three points meet.
 fn corner(facets: &Facets<'_>, h: f64, three: [Place; 3]) -> Option<Place> {
     let normal = |s| facets.plane(s).normal;
     let mut sides = Sides::default();
@@ -154,8 +162,7 @@ fn corner(facets: &Facets<'_>, h: f64, three: [Place; 3]) -> Option<Place> {
         at = nearest(sides.iter().map(|s| facets.plane(s)), middle)?;
     }
     let reach = three.iter().map(|p| p.at.distance(at)).fold(0.0, f64::max);
-    let near = three.iter().any(|p| p.at.distance(at) < SAME * h);
-    (!near && reach < 2.0 * h && (beyond < 0.05 * h || reach < h)).then_some(Place { at, sides })
+    (reach < 2.0 * h && (beyond < 0.05 * h || reach < h)).then_some(Place { at, sides })
 }
 
 /// Cuts a triangle at points on some of its edges (corner k to the next).

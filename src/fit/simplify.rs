@@ -82,9 +82,12 @@ pub(super) fn simplified(
     Ok(is_solid(&surface.mesh, true, progress)?.then(|| surface.clone()))
 }
 
-/// Whether the mesh is valid, also in a format that merges equal positions.
+/// Whether the mesh is valid, also in a format that merges equal positions; without looking for
+/// intersections if there are known to be none.
 fn is_solid(mesh: &TriMesh, self_intersections: bool, progress: &Progress) -> Result<bool, Stopped> {
-    Ok(validate(mesh, &ValidateOptions { self_intersections, weld: true }, progress)?.is_valid())
+    let mut validity = validate(mesh, &ValidateOptions { self_intersections, weld: true }, progress)?;
+    validity.self_intersecting_triangles.get_or_insert(0);
+    Ok(validity.is_valid())
 }
 
 /// Freezes the vertices within `reach` of the boxes of triangles `bad` of the simplified surface.
