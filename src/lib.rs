@@ -4,7 +4,7 @@
 //! The data's way, stage by stage, in the order of the modules below:
 //!
 //! ```text
-//! files ─► io ─► mesh (soup) ─► orient ─► ldi ─► spans ─► vote ─► sdf ─► contour ─► mesh ─► io ─► files
+//! files ─► io ─► mesh (soup) ─► orient ─► ldi ─► spans ─► vote ─► sdf ─► contour ─► fit ─► mesh ─► io ─► files
 //! ```
 //!
 //! What is promised: the mesh that a pipeline returns is closed, oriented, 2-manifold and free of
