@@ -1,0 +1,80 @@
+//! On which side of ½ the winding number is on a block of voxels: by the dipoles, which are rough;
+//! near ½ by the boundary; very near by the boundary exactly.
+
+use std::cell::OnceCell;
+
+use glam::{DVec2, DVec3};
+
+use super::boundary::Loops;
+use super::dipoles::{Dipoles, WindingTree, complete};
+use super::expansion::Expansion;
+use super::rim::Rim;
+
+/// Groups of boundary edges nearer to the block than this many of its radii are summed one by one.
+const APART: f64 = 5.0;
+/// Nearer to ½ than this, groups and polynomial, which together err by up to 0.004, do not decide.
+const UNSURE: f64 = 0.01;
+
+/// One operand near a block.
+pub(super) struct Block<'w> {
+    tree: &'w WindingTree,
+    rim: &'w Rim,
+    centre: DVec3,
+    radius: f64,
+    dipoles: Dipoles<'w>,
+    /// Made when it is first needed; `None` for a closed operand.
+    boundary: OnceCell<Option<Boundary>>,
+}
+
+impl<'w> Block<'w> {
+    /// For points within `radius` of `centre`, model units.
+    pub(super) fn new(tree: &'w WindingTree, rim: &'w Rim, centre: DVec3, radius: f64) -> Self {
+        Self { tree, rim, centre, radius, dipoles: tree.around(centre, radius), boundary: OnceCell::new() }
+    }
+
+    /// Whether the winding number at `p` is above ½.
+    pub(super) fn is_inside(&self, p: DVec3) -> bool {
+        let (rough, error) = (self.dipoles.winding(p), self.dipoles.error());
+        if (rough - 0.5).abs() > error {
+            return rough > 0.5;
+        }
+        // Only many shells at once make so large an error.
+        let rough = if error < 0.4 { rough } else { self.tree.winding(p) };
+        complete(self.above(p), rough) > 0.5
+    }
+
+    /// The winding number over ½ but for a whole number.
+    fn above(&self, p: DVec3) -> f64 {
+        let boundary = self.boundary.get_or_init(|| Boundary::new(self.rim, self.centre, self.radius));
+        let Some(boundary) = boundary else { return -0.5 };
+        let above = boundary.above(p);
+        if above.abs() > UNSURE {
+            return above;
+        }
+        self.rim.view(p, 0.0).map_or(above, |view| view.at(p).above)
+    }
+}
+
+/// The boundary of an operand near a block.
+struct Boundary {
+    far: Expansion,
+    near: Loops,
+}
+
+impl Boundary {
+    fn new(rim: &Rim, centre: DVec3, radius: f64) -> Option<Self> {
+        let mut far = Expansion::about(centre);
+        let near = rim.loops()?.visit(centre, radius, APART * radius, |group| {
+            far.add_dipole(group.centre, group.dipole);
+            far.add(group.quadrupole_angle(centre));
+        });
+        Some(Self { far, near })
+    }
+
+    /// The winding number over ½ but for a whole number.
+    fn above(&self, p: DVec3) -> f64 {
+        let mut turn = self.near.turn(p);
+        turn.times(DVec2::from_angle(0.5 * self.far.at(p)));
+        turn.above()
+    }
+}
