@@ -10,10 +10,11 @@ use super::dipoles::{Dipoles, WindingTree, complete};
 use super::expansion::Expansion;
 use super::rim::Rim;
 
-/// Groups of boundary edges nearer to the block than this many of its radii are summed one by one.
-const APART: f64 = 5.0;
-/// Nearer to ½ than this, groups and polynomial, which together err by up to 0.004, do not decide.
-const UNSURE: f64 = 0.01;
+/// Groups of boundary edges are far from this many radii on, their own and the block's together.
+const FAR: f64 = 3.0;
+/// Nearer to ½ than this, what is far does not decide: it errs by up to 0.0015 on lion, beetle and
+/// camelhead.
+const UNSURE: f64 = 0.005;
 
 /// One operand near a block.
 pub(super) struct Block<'w> {
@@ -51,7 +52,7 @@ impl<'w> Block<'w> {
         if above.abs() > UNSURE {
             return above;
         }
-        self.rim.view(p, 0.0).map_or(above, |view| view.at(p).above)
+        self.rim.view(p, 0.0).map_or(above, |view| view.above(p))
     }
 }
 
@@ -64,7 +65,7 @@ struct Boundary {
 impl Boundary {
     fn new(rim: &Rim, centre: DVec3, radius: f64) -> Option<Self> {
         let mut far = Expansion::about(centre);
-        let near = rim.loops()?.visit(centre, radius, APART * radius, |group| {
+        let near = rim.loops()?.visit(centre, radius, FAR, |group| {
             far.add_dipole(group.centre, group.dipole);
             far.add(group.quadrupole_angle(centre));
         });

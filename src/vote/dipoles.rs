@@ -21,9 +21,9 @@ const ROUGH: f64 = 4.0 / 9.0;
 const APART: f64 = 2.0;
 /// The error then, as a share of the sum of the far dipoles' sizes. Measured: up to 0.12 near the
 /// surfaces of lion, beetle and camelhead, where errors reach 0.107.
-const ERROR: f64 = 0.15;
+const ERROR: f64 = 0.13;
 /// And where dipoles cancel.
-const LEAST_ERROR: f64 = 0.03;
+const LEAST_ERROR: f64 = 0.02;
 /// Triangles longer than this part of the bounding box's diagonal are cut. A box takes a few
 /// thousand pieces; files of slivers get ten times faster.
 const PIECES: f64 = 48.0;

@@ -73,7 +73,7 @@ impl Winding<'_> {
             // A passing number may also be 1½ or -½.
             let above = match (passing, &views[operand]) {
                 (Some(_), _) => 0.0,
-                (None, Some(view)) => view.at(p).above,
+                (None, Some(view)) => view.above(p),
                 (None, None) => -0.5,
             };
             let w = tree.complete(above, p);

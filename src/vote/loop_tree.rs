@@ -68,15 +68,16 @@ impl LoopTree {
     /// For points within `radius` of `centre`.
     pub(super) fn around(&self, centre: DVec3, radius: f64) -> Nearby<'_> {
         let mut far = Vec::new();
-        let near = self.visit(centre, radius, 0.0, |group| far.push(group));
+        let near = self.visit(centre, radius, FAR, |group| far.push(group));
         Nearby { far, near }
     }
 
-    /// Calls `far` with what is far from all points within `radius` of `centre`, and at least `apart`
-    /// from the centre. Returns the rest: loops on which edges stand for the parts that are far.
+    /// Calls `far` with what is far from all points within `radius` of `centre`: nodes at least `apart`
+    /// times as far from the centre as both radii together. Returns the rest: loops on which edges stand
+    /// for the parts that are far.
     pub(super) fn visit<'t>(&'t self, centre: DVec3, radius: f64, apart: f64, mut far: impl FnMut(&'t Group)) -> Loops {
         let mut is_far = |node: &'t Node| {
-            let is_far = node.group.centre.distance(centre) > (radius + FAR * node.radius).max(apart);
+            let is_far = node.group.centre.distance(centre) > apart * (radius + node.radius);
             if is_far {
                 far(&node.group);
             }
