@@ -25,7 +25,7 @@ fn with_holes(bencher: Bencher<'_, '_>, resolution: u32) {
 }
 
 /// Lids over a hole with so many boundary edges: all the lattice edges through the missing top of a
-/// box, some 10,000.
+/// tube, some 5,000.
 #[divan::bench(args = [200, 2000, 20000], sample_count = 10)]
 fn lids(bencher: Bencher<'_, '_>, rim: u32) {
     let ready = common::ready(common::open_tube(rim), 80);
@@ -35,6 +35,5 @@ fn lids(bencher: Bencher<'_, '_>, rim: u32) {
     let edges = (0..dims.y).flat_map(|y| (0..dims.x).map(move |x| IVec3::new(x, y, top)));
     let crossing = |v: IVec3| winding.crossing(v, v + IVec3::Z, &Expression::Operand(0)).expect("nobody stops it");
     let edges: Vec<IVec3> = edges.filter(|&v| crossing(v).is_some()).collect();
-    eprintln!("{} lids", edges.len());
     bencher.bench_local(|| edges.iter().filter(|&&v| crossing(v).is_some()).count());
 }

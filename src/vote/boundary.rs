@@ -54,12 +54,22 @@ impl Loops {
                 at = next as u32;
                 if let Some(first) = place[at as usize] {
                     path[first..].iter().for_each(|&v| place[v as usize] = None);
-                    loops.points.extend(path.drain(first..).map(|v| points[v as usize]));
-                    loops.ends.push(loops.points.len() as u32);
+                    path.drain(first..).for_each(|v| loops.push(points[v as usize]));
+                    loops.close();
                 }
             }
         }
         loops
+    }
+
+    /// Adds a point to the last loop.
+    pub(super) fn push(&mut self, point: DVec3) {
+        self.points.push(point);
+    }
+
+    /// Ends the last loop.
+    pub(super) fn close(&mut self) {
+        self.ends.push(self.points.len() as u32);
     }
 
     /// Number of edges, which is that of the points.

@@ -69,14 +69,17 @@ impl Winding<'_> {
         views: &[Option<View<'_>>],
     ) -> Result<(Vec<bool>, Vec<bool>), Stopped> {
         let side = |(operand, tree): (usize, &super::WindingTree)| {
-            let rough = tree.roughly(p);
-            match together.iter().find(|passage| passage.operand == operand) {
-                // Otherwise it passes 1½ or -½.
-                Some(passage) if (rough - 0.5).abs() < 0.5 => (passage.leaving, !passage.leaving),
-                _ => {
-                    let w = views[operand].as_ref().map_or(rough, |view| view.at(p).complete(rough));
-                    (w > 0.5, w > 0.5)
-                }
+            let passing = together.iter().find(|passage| passage.operand == operand);
+            // A passing number may also be 1½ or -½.
+            let above = match (passing, &views[operand]) {
+                (Some(_), _) => 0.0,
+                (None, Some(view)) => view.above(p),
+                (None, None) => -0.5,
+            };
+            let w = tree.complete(above, p);
+            match passing {
+                Some(passage) if w == 0.5 => (passage.leaving, !passage.leaving),
+                _ => (w > 0.5, w > 0.5),
             }
         };
         Ok(self.trees()?.iter().enumerate().map(side).unzip())

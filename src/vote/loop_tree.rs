@@ -7,7 +7,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::boundary::Loops;
-use super::rim::{Phase, Product, Sight, Span};
+use super::phase::Phase;
 use crate::mesh::Bounds;
 use crate::progress::{Progress, Stopped};
 
@@ -38,19 +38,19 @@ struct Node {
 
 /// Any surface over loops, seen from afar.
 #[derive(Debug, Clone, Copy)]
-struct Group {
-    centre: DVec3,
+pub(super) struct Group {
+    pub(super) centre: DVec3,
     /// The area vector.
-    dipole: DVec3,
+    pub(super) dipole: DVec3,
     /// Σ ½(A sᵀ + s Aᵀ) over triangles of area vector A, s from the centre.
     quadrupole: DMat3,
 }
 
-/// What is far in groups, and the triangles that are near.
+/// What is far in groups, and what is near.
 #[derive(Debug, Clone)]
 pub(super) struct Nearby<'t> {
     far: Vec<&'t Group>,
-    near: Vec<[DVec3; 3]>,
+    near: Loops,
 }
 
 impl LoopTree {
@@ -67,32 +67,63 @@ impl LoopTree {
 
     /// For points within `radius` of `centre`.
     pub(super) fn around(&self, centre: DVec3, radius: f64) -> Nearby<'_> {
-        let mut nearby = Nearby { far: Vec::new(), near: Vec::new() };
+        let mut far = Vec::new();
+        let near = self.visit(centre, radius, FAR, |group| far.push(group));
+        Nearby { far, near }
+    }
+
+    /// Calls `far` with what is far from all points within `radius` of `centre`: nodes at least `apart`
+    /// times as far from the centre as both radii together. Returns the rest: loops on which edges stand
+    /// for the parts that are far.
+    pub(super) fn visit<'t>(&'t self, centre: DVec3, radius: f64, apart: f64, mut far: impl FnMut(&'t Group)) -> Loops {
+        let mut is_far = |node: &'t Node| {
+            let is_far = node.group.centre.distance(centre) > apart * (radius + node.radius);
+            if is_far {
+                far(&node.group);
+            }
+            is_far
+        };
+        let mut near = Loops::default();
         let mut stack = vec![0];
         while let Some(n) = stack.pop() {
-            let node: &Node = &self.nodes[n as usize];
-            if node.group.centre.distance(centre) - radius > FAR * node.radius {
-                nearby.far.push(&node.group);
-            } else {
-                nearby.near.extend(node.triangle.map(|t| t.map(|v| self.points[v as usize])));
-                stack.extend(node.children.into_iter().rev().filter(|&child| child > 0));
+            let node = &self.nodes[n as usize];
+            match node.triangle {
+                _ if is_far(node) => {}
+                None => stack.extend(node.children),
+                Some(corners) => self.follow(node, corners, &mut is_far, &mut near),
             }
         }
-        nearby
+        near
+    }
+
+    /// Adds a loop whose node is not far.
+    fn follow<'t>(
+        &'t self,
+        node: &'t Node,
+        [first, middle, last]: [u32; 3],
+        is_far: &mut impl FnMut(&'t Node) -> bool,
+        near: &mut Loops,
+    ) {
+        near.push(self.points[first as usize]);
+        // Children, and where they end; 0 is a single edge.
+        let mut parts = vec![(node.children[1], last), (node.children[0], middle)];
+        while let Some((child, end)) = parts.pop() {
+            let node = &self.nodes[child as usize];
+            match node.triangle {
+                Some([_, middle, _]) if child > 0 && !is_far(node) => {
+                    parts.extend([(node.children[1], end), (node.children[0], middle)]);
+                }
+                _ => near.push(self.points[end as usize]),
+            }
+        }
+        near.close();
     }
 }
 
 impl Nearby<'_> {
     /// The winding number at `p` but for a whole number.
     pub(super) fn at(&self, p: DVec3) -> Phase {
-        let (mut turn, mut currents) = (Product::ONE, DVec3::ZERO);
-        for corners in &self.near {
-            let [a, b, c] = corners.map(|corner| Sight::new(p, corner));
-            let spans = [Span::new(a, b), Span::new(b, c), Span::new(c, a)];
-            turn.times(spans[1].turn(a.direction()));
-            turn.shorten();
-            currents += spans.iter().map(Span::current).sum::<DVec3>();
-        }
+        let (mut turn, mut currents) = self.near.turn_and_currents(p);
         let mut solid_angle = 0.0;
         for group in &self.far {
             let (angle, gradient) = group.solid_angle(p);
@@ -100,7 +131,7 @@ impl Nearby<'_> {
             currents += gradient;
         }
         turn.times(DVec2::from_angle(0.5 * solid_angle));
-        Phase::new(turn.direction(), currents)
+        Phase::new(turn, currents)
     }
 }
 
@@ -110,12 +141,21 @@ impl Group {
         let r = self.centre - p;
         let second = 1.0 / r.length_squared();
         let third = second * second.sqrt();
-        let (along, bent) = (self.dipole.dot(r), self.quadrupole * r);
+        let along = self.dipole.dot(r);
+        let (angle, gradient) = self.quadrupole_angle(p);
+        (angle + along * third, gradient + (r * (3.0 * along * second) - self.dipole) * third)
+    }
+
+    /// The quadrupole's share of the solid angle seen from `p`, and its gradient.
+    pub(super) fn quadrupole_angle(&self, p: DVec3) -> (f64, DVec3) {
+        let r = self.centre - p;
+        let second = 1.0 / r.length_squared();
+        let third = second * second.sqrt();
+        let bent = self.quadrupole * r;
         let trace = self.quadrupole.x_axis.x + self.quadrupole.y_axis.y + self.quadrupole.z_axis.z;
         let twice = 3.0 * r.dot(bent) * second;
-        let angle = (along + trace - twice) * third;
-        let rise = self.dipole - bent * (6.0 * second) - r * ((3.0 * (along + trace) - 5.0 * twice) * second);
-        (angle, rise * -third)
+        let gradient = bent * (6.0 * second) + r * ((3.0 * trace - 5.0 * twice) * second);
+        ((trace - twice) * third, gradient * third)
     }
 
     /// Adds triangles of area vector `dipole` about `centre`.
@@ -227,8 +267,9 @@ impl<'l> Builder<'l> {
 mod tests {
     use super::*;
     use crate::mesh::TriMesh;
+    use crate::vote::dipoles::complete;
     use crate::vote::dipoles::tests::{places, sphere, sum_of_all};
-    use crate::vote::rim::tests::by_differences;
+    use crate::vote::phase::tests::by_differences;
 
     fn tree(mesh: &TriMesh) -> LoopTree {
         let loops = Loops::around(mesh, 0..mesh.triangles.len(), &Progress::none()).expect("not stopped");
@@ -244,7 +285,7 @@ mod tests {
         for p in places(500) {
             let nearby = tree.around(p + DVec3::new(0.01, 0.0, -0.01), 0.02);
             let (all, phase) = (sum_of_all(&mesh, p), nearby.at(p));
-            largest.0 = largest.0.max((phase.complete(all) - all).abs());
+            largest.0 = largest.0.max((complete(phase.above, all) - all).abs());
             let gradient = by_differences(|q| nearby.at(q).above, p, 1e-6);
             largest.1 = largest.1.max(phase.gradient.distance(gradient) / (1.0 + gradient.length()));
         }

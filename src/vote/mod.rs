@@ -1,12 +1,15 @@
 //! From spans to solid voxels: the 13 directions vote (Bærentzen §3.2), brick by brick, near the
 //! surface only.
 
+mod block;
 mod boundary;
 mod dipoles;
 mod doubt;
+mod expansion;
 mod grow;
 mod lid;
 mod loop_tree;
+mod phase;
 mod rim;
 mod tally;
 mod winding;

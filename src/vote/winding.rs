@@ -6,16 +6,13 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, IVec3};
 
-use super::dipoles::{Local, WindingTree};
-use super::rim::{Rim, View};
+use super::block::Block;
+use super::dipoles::WindingTree;
+use super::rim::Rim;
 use crate::lattice::Lattice;
 use crate::ldi::{Expression, Operands};
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
-
-/// How far from ½ the tree may put a voxel that is on the other side of it, and more: it errs by
-/// up to 0.02.
-const UNSURE: f64 = 0.05;
 
 /// The winding numbers of all operands at voxels. The trees are made when they are first needed:
 /// the voxels of a closed mesh need none.
@@ -53,18 +50,12 @@ impl<'a> Winding<'a> {
         let model = |p: DVec3| self.lattice.to_model(base.as_dvec3() + p);
         let centre = model(DVec3::splat(1.5));
         let radius = 1.5 * 3f64.sqrt() * self.lattice.h;
-        let mut local: Vec<Block<'_>> =
-            self.trees()?.iter().map(|tree| Block::new(tree.around(centre, radius))).collect();
-        let mut inside = vec![false; local.len()];
+        let operands = self.trees()?.iter().zip(self.rims()?);
+        let blocks: Vec<Block<'_>> = operands.map(|(tree, rim)| Block::new(tree, rim, centre, radius)).collect();
+        let mut inside = vec![false; blocks.len()];
         for &offset in wanted {
             let p = model(offset.as_dvec3());
-            for (operand, block) in local.iter_mut().enumerate() {
-                let mut w = block.dipoles.winding(p);
-                if (w - 0.5).abs() < UNSURE {
-                    w = block.refine(w, p, || Ok(self.rims()?[operand].view(centre, radius)))?;
-                }
-                inside[operand] = w > 0.5;
-            }
+            inside.iter_mut().zip(&blocks).for_each(|(inside, block)| *inside = block.is_inside(p));
             decide(offset, expression.evaluate(&inside));
         }
         Ok(())
@@ -91,32 +82,5 @@ impl<'a> Winding<'a> {
     /// From lattice coordinates to those of the trees and the rims.
     pub(super) fn to_model(&self, p: DVec3) -> DVec3 {
         self.lattice.to_model(p)
-    }
-}
-
-/// One operand near a block of voxels.
-struct Block<'w> {
-    dipoles: Local<'w>,
-    /// Looked for when first needed; none for a closed operand.
-    rim: Option<Option<View<'w>>>,
-}
-
-impl<'w> Block<'w> {
-    fn new(dipoles: Local<'w>) -> Self {
-        Self { dipoles, rim: None }
-    }
-
-    /// The winding number at `p`, `rough` by the dipoles, by the boundary.
-    fn refine(
-        &mut self,
-        rough: f64,
-        p: DVec3,
-        rim: impl FnOnce() -> Result<Option<View<'w>>, Stopped>,
-    ) -> Result<f64, Stopped> {
-        let view = match &self.rim {
-            Some(view) => view,
-            None => self.rim.insert(rim()?),
-        };
-        Ok(view.as_ref().map_or(rough, |view| view.at(p).complete(rough)))
     }
 }
