@@ -31,6 +31,21 @@ pub(super) fn misshapen(
     changed.par_iter().copied().filter(wrong).collect()
 }
 
+/// The triangles among `changed` with a corner where another vertex is, too: in formats without indices
+/// the two would become one.
+pub(super) fn coincident(mesh: &TriMesh, changed: &[u32]) -> Vec<u32> {
+    let mut used = vec![false; mesh.positions.len()];
+    mesh.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+    let key = |v: u32| (mesh.positions[v as usize] + 0.0).to_array().map(f64::to_bits);
+    let mut places: Vec<([u64; 3], u32)> =
+        (0..used.len() as u32).into_par_iter().filter(|&v| used[v as usize]).map(|v| (key(v), v)).collect();
+    places.par_sort_unstable();
+    let shared: FxHashSet<u32> =
+        places.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1).flatten().map(|place| place.1).collect();
+    let touches = |t: &u32| mesh.triangles[*t as usize].iter().any(|v| shared.contains(v));
+    if shared.is_empty() { Vec::new() } else { changed.iter().copied().filter(touches).collect() }
+}
+
 /// Pieces of space, in h, by which triangles that could meet are found.
 const BLOCK: f64 = 4.0;
 

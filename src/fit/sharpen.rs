@@ -35,6 +35,7 @@ pub(super) fn sharpen(
         let near = merged(back, &other);
         let before = |t: u32| shape(home.mesh.corners(cut.origin[t as usize] as usize)).0;
         let mut bad = safeguard::misshapen(&cut.surface, facets, h, &other, before);
+        bad.extend(safeguard::coincident(&cut.surface.mesh, &near));
         bad.extend(safeguard::meeting(&cut.surface.mesh, h, &near, progress)?);
         if bad.is_empty() {
             return Ok((cut.surface, fitting.report()));
