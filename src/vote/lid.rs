@@ -11,8 +11,11 @@ use crate::progress::Stopped;
 const TOGETHER: f64 = 1e-9;
 /// Places are found to about this, in lengths of the edge.
 const TOLERANCE: f64 = 1e-11;
-/// A piece of the edge is cut where its ends' slopes foretell a change of the winding number that is
-/// wrong by more...
+/// The edge is searched in this many pieces: first whole; and if that finds nothing, because it passes
+/// two rims and the phase is as before, in more.
+const PIECES: [u32; 2] = [1, 16];
+/// A piece is cut where its ends' slopes foretell a change of the winding number that is wrong by
+/// more...
 const CLEAR: f64 = 0.1;
 /// ...down to so many halvings: it then passes a rim within a millionth of its length.
 const MOST_HALVINGS: u32 = 20;
@@ -34,7 +37,7 @@ impl Winding<'_> {
     /// Where the solid of `expression` ends on the lattice edge from voxel `inside` to voxel
     /// `outside` because the winding number of an operand passes ½ there; of several such places the
     /// middle one. `None` where no operand does, where a triangle makes the change, and everywhere
-    /// for closed operands.
+    /// for closed operands; also, rarely, where the edge passes several rims closer than h/16 together.
     ///
     /// The place is exact to 1e-10 of the edge where the operand has up to 2048 boundary edges;
     /// beyond, winding numbers err by up to 0.001. Stops only while trees are made, at the first
@@ -44,21 +47,26 @@ impl Winding<'_> {
         let edge = Segment { start, way: self.to_model(outside.as_dvec3()) - start };
         let half = edge.way.length() / 2.0;
         let views: Vec<_> = self.rims()?.iter().map(|rim| rim.view(edge.at(0.5), half)).collect();
-        let mut passages = Vec::new();
-        for (operand, view) in views.iter().enumerate() {
-            if let Some(view) = view {
-                Search { edge, view, operand }.run(&mut passages);
+        for pieces in PIECES {
+            let mut passages = Vec::new();
+            for (operand, view) in views.iter().enumerate() {
+                if let Some(view) = view {
+                    Search { edge, view, operand }.run(pieces, &mut passages);
+                }
+            }
+            passages.sort_by(|a, b| a.t.total_cmp(&b.t));
+            let mut ends = Vec::new();
+            for together in passages.chunk_by(|a, b| b.t - a.t < TOGETHER) {
+                let (before, after) = self.sides(edge.at(together[0].t), together, &views)?;
+                if expression.evaluate(&before) && !expression.evaluate(&after) {
+                    ends.push(together[0]);
+                }
+            }
+            if let Some(end) = ends.get(ends.len() / 2) {
+                return Ok(end.lid());
             }
         }
-        passages.sort_by(|a, b| a.t.total_cmp(&b.t));
-        let mut ends = Vec::new();
-        for together in passages.chunk_by(|a, b| b.t - a.t < TOGETHER) {
-            let (before, after) = self.sides(edge.at(together[0].t), together, &views)?;
-            if expression.evaluate(&before) && !expression.evaluate(&after) {
-                ends.push(together[0]);
-            }
-        }
-        Ok(ends.get(ends.len() / 2).and_then(Passage::lid))
+        Ok(None)
     }
 
     /// For each operand whether it is inside before and after it passes `p` as `together` say.
@@ -170,8 +178,9 @@ struct Search<'a> {
 impl Search<'_> {
     /// Adds the passages of the edge, cutting it where it is unclear which way the phase turns and
     /// where it may pass and come back.
-    fn run(&self, found: &mut Vec<Passage>) {
-        let mut stack = vec![([self.sample(0.0), self.sample(1.0)], MOST_HALVINGS)];
+    fn run(&self, pieces: u32, found: &mut Vec<Passage>) {
+        let samples: Vec<Sample> = (0..=pieces).map(|k| self.sample(f64::from(k) / f64::from(pieces))).collect();
+        let mut stack: Vec<_> = samples.windows(2).rev().map(|ends| ([ends[0], ends[1]], MOST_HALVINGS)).collect();
         let mut cuts = MOST_CUTS;
         while let Some(([a, b], halvings)) = stack.pop() {
             let piece = Piece::between(a, b);
@@ -205,7 +214,8 @@ impl Search<'_> {
             let halve = step % 4 == 0 || !(newton >= low && newton <= high);
             let next = if halve { (low + high) / 2.0 } else { newton };
             let share = (next - t) / length;
-            let bend = change.length() * self.edge.way.length() / here.slope.abs();
+            let bends = here.gradient.distance(a.gradient) + here.gradient.distance(b.gradient);
+            let bend = bends * self.edge.way.length() / here.slope.abs();
             // Newton's place errs as the square of the step; the gradient, taken to change evenly, as
             // the step where it changes much, and less by as much as it changes less.
             let close = share.abs() * bend * (share.abs() + bend) < TOLERANCE;
