@@ -152,7 +152,9 @@ impl<'a> Fitting<'a> {
         let new = creases(&self.surface, self.facets, self.h, &self.options, again);
         self.points.extend(new);
         self.points.par_sort_unstable_by_key(|p| p.0);
-        self.dirty = Some(dirty);
+        // What is cut in a triangle also depends on the triangles beside it.
+        let corners = dirty.iter().flat_map(|&t| self.home.mesh.triangles[t as usize]);
+        self.dirty = Some(corners.flat_map(|v| self.around.of(v)).copied().collect());
         back.iter().for_each(|&v| self.moved[v as usize] = false);
     }
 
