@@ -16,8 +16,8 @@ const BYTES_PER_CROSSING: f64 = 50.0;
 const BYTES_PER_TRIANGLE: f64 = 400.0;
 /// Bytes of the program itself.
 const BASE_BYTES: f64 = 12e6;
-/// Seconds on one core per h² of surface, and per input triangle.
-const SECONDS_PER_CELL: f64 = 9e-6;
+/// Seconds on one core per h² of surface, fit included, and per input triangle.
+const SECONDS_PER_CELL: f64 = 22e-6;
 const SECONDS_PER_TRIANGLE: f64 = 3e-6;
 /// Triangles of the result per h² of surface.
 const TRIANGLES_PER_CELL: f64 = 2.2;

@@ -177,3 +177,27 @@ fn a_stream_carries_the_same_bytes_as_a_file() {
     let streamed = run_in(&folder, "repair testdata/open_cube.off -o - --out-format ply --resolution 32").exits(0);
     assert_eq!(streamed.stdout, std::fs::read(folder.path().join("a.ply")).unwrap());
 }
+
+#[test]
+fn the_map_shows_what_closes_holes_and_the_fit_has_switches() {
+    let folder = folder();
+    let repair = |flags: &str| {
+        let line = format!("repair testdata/open_cube.off -o OUT/out.off --resolution 48 --force {flags}");
+        let report = run_in(&folder, &format!("{line} --json")).exits(0).json();
+        (report["output"]["validity"]["triangles"].as_u64().expect("a count"), report)
+    };
+    let (few, report) = repair("--map OUT/map.ply");
+    let closed = report["pipeline"]["closed_triangles"].as_u64().expect("a count");
+    assert!(few < 100 && closed > 0 && closed < few, "{few} triangles, {closed} of them close the hole");
+    let map = solid(&folder, "map.ply");
+    assert_eq!(map["triangles"], few);
+    let text = String::from_utf8_lossy(&std::fs::read(folder.path().join("map.ply")).expect("a map")).into_owned();
+    assert!(text.contains("property uchar red"), "the map has colours");
+    let (all, _) = repair("--simplify off");
+    let (raw, report) = repair("--no-fit");
+    assert!(all > 1000 && raw > 1000, "{all} and {raw} triangles");
+    assert!(report["pipeline"]["fit"].is_null());
+    run_in(&folder, "repair testdata/open_cube.off -o OUT/out.off --no-fit --simplify off").exits(2);
+    run_in(&folder, "repair testdata/open_cube.off -o OUT/out.ply --map OUT/out.ply").exits(2);
+    run_in(&folder, "repair testdata/open_cube.off -o OUT/out.ply --map testdata/open_cube.off").exits(2);
+}
