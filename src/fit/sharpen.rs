@@ -43,7 +43,7 @@ pub(super) fn sharpen(
         let bad = merged(bad.into_iter().map(|t| cut.origin[t as usize]), &[]);
         fitting.undo(&bad, &cut.centred, round >= PATIENT_ROUNDS);
     }
-    Ok((home.clone(), FitReport::default()))
+    Ok((home.clone(), FitReport { given_up: home.mesh.triangles.len(), ..FitReport::default() }))
 }
 
 /// All numbers of both lists, ascending, each once.
