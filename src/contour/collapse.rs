@@ -17,6 +17,7 @@ use super::place::place;
 use super::star::{Fault, star_fault, triangle_fault};
 use super::{Contour, ContourVertex, NO_TRIANGLE};
 use crate::lattice::Lattice;
+use crate::mesh::around::Around;
 use crate::mesh::{TriMesh, intersecting_triangles};
 use crate::progress::{Progress, Stopped};
 
@@ -131,9 +132,8 @@ pub(super) struct Merging<'a> {
     pub(super) stands: Vec<u32>,
     /// The current position of a vertex that stands for others or itself.
     pub(super) at: Vec<DVec3>,
-    /// The raw triangles around vertex v: `around[starts[v]..starts[v + 1]]`.
-    starts: Vec<u32>,
-    around: Vec<u32>,
+    /// The raw triangles around each vertex.
+    around: Around,
 }
 
 impl<'a> Merging<'a> {
@@ -144,7 +144,6 @@ impl<'a> Merging<'a> {
         merge: Merge,
     ) -> Self {
         let count = raw.mesh.positions.len();
-        let (starts, around) = triangles_around(&raw.mesh);
         let (members, candidates) = groups(&raw.vertices, planes);
         let mut merging = Self {
             raw,
@@ -153,8 +152,7 @@ impl<'a> Merging<'a> {
             group_of: vec![ALONE; count],
             stands: (0..count as u32).collect(),
             at: raw.mesh.positions.clone(),
-            starts,
-            around,
+            around: Around::new(&raw.mesh),
         };
         merging.groups = candidates
             .into_par_iter()
@@ -214,9 +212,7 @@ impl<'a> Merging<'a> {
 
     /// The raw triangles around a raw vertex.
     fn triangles_at(&self, vertex: u32) -> impl Iterator<Item = (u32, [u32; 3])> {
-        let v = vertex as usize;
-        let ids = &self.around[self.starts[v] as usize..self.starts[v + 1] as usize];
-        ids.iter().map(|&t| (t, self.raw.mesh.triangles[t as usize]))
+        self.around.of(vertex).iter().map(|&t| (t, self.raw.mesh.triangles[t as usize]))
     }
 
     /// The group of a vertex if it is merged.
@@ -407,23 +403,4 @@ impl<'a> Merging<'a> {
 /// Whether a normal agrees with that of `triangle` (20°), either way round.
 fn flat(normal: DVec3, planes: &impl Fn(u32) -> Option<(DVec3, f64)>, triangle: u32) -> bool {
     planes(triangle).is_none_or(|(other, _)| normal.dot(other).abs() > 0.94)
-}
-
-/// For each vertex the triangles around it: where its list starts, and the lists.
-fn triangles_around(mesh: &TriMesh) -> (Vec<u32>, Vec<u32>) {
-    let mut starts = vec![0u32; mesh.positions.len() + 1];
-    mesh.triangles.iter().flatten().for_each(|&v| starts[v as usize] += 1);
-    let mut sum = 0;
-    for start in &mut starts {
-        sum += *start;
-        *start = sum;
-    }
-    let mut around = vec![NO_TRIANGLE; sum as usize];
-    for (id, triangle) in mesh.triangles.iter().enumerate().rev() {
-        for &v in triangle {
-            starts[v as usize] -= 1;
-            around[starts[v as usize] as usize] = id as u32;
-        }
-    }
-    (starts, around)
 }

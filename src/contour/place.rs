@@ -1,10 +1,10 @@
 //! Where the merged vertex of a voxel goes.
 
 use glam::{DVec3, IVec3};
-use nalgebra::{Matrix3, Vector3};
 
 use super::NO_TRIANGLE;
 use crate::lattice::Lattice;
+use crate::mesh::least_squares::least_squares;
 
 /// Weight of the pull towards the mean of the merged vertices, against 1 for a plane.
 const PULL: f64 = 1e-7;
@@ -46,7 +46,7 @@ pub(super) fn place(
         }
     }
     let known = &known[..count];
-    let step = least_squares(known.iter().map(|&(_, n, distance)| (n, distance)), pull).clamp_length_max(REACH);
+    let step = least_squares(known.iter().map(|&(_, n, distance)| (n, distance)), CUT, pull).clamp_length_max(REACH);
     let step = if step.is_finite() { step } else { DVec3::ZERO };
     let near = lattice.to_lattice(mean) + step;
     let centre = voxel.as_dvec3();
@@ -54,27 +54,6 @@ pub(super) fn place(
     let off = |k: &(u32, DVec3, f64)| (k.1.dot(step) - k.2).abs();
     let source = known.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
     (at, source.map_or(NO_TRIANGLE, |k| k.0))
-}
-
-/// The point nearest to planes (unit normal, distance from the origin) that stays at the origin in the
-/// directions they say little of, with weight `pull` for staying there in the others.
-fn least_squares(planes: impl Iterator<Item = (DVec3, f64)>, pull: f64) -> DVec3 {
-    let mut matrix = Matrix3::zeros();
-    let mut right = Vector3::zeros();
-    for (n, distance) in planes {
-        let n = Vector3::new(n.x, n.y, n.z);
-        matrix += n * n.transpose();
-        right += n * distance;
-    }
-    let eigen = matrix.symmetric_eigen();
-    let largest = eigen.eigenvalues.max();
-    let mut step = Vector3::zeros();
-    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-        if *value > CUT * largest {
-            step += vector * (vector.dot(&right) / (value + pull));
-        }
-    }
-    DVec3::new(step.x, step.y, step.z)
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 //! cuts off.
 
 use glam::DVec3;
-use nalgebra::{Matrix3, Vector3};
 
 use super::facets::{Facets, Side, Sides};
 use crate::mesh::Plane;
+use crate::mesh::least_squares::least_squares;
 
 /// Planes that turn by less (cosine, 3°) are no crease.
 pub(super) const FLAT: f64 = 0.9986;
@@ -103,20 +103,6 @@ fn crossing(p: &Plane, q: &Plane, x: DVec3, y: DVec3) -> Option<DVec3> {
 
 /// The point nearest to `from` that is on all planes, in the least squares' sense.
 pub(super) fn nearest(planes: impl Iterator<Item = Plane>, from: DVec3) -> Option<DVec3> {
-    let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
-    for plane in planes {
-        let n = Vector3::new(plane.normal.x, plane.normal.y, plane.normal.z);
-        matrix += n * n.transpose();
-        right -= n * plane.distance(from);
-    }
-    let eigen = matrix.symmetric_eigen();
-    let largest = eigen.eigenvalues.max();
-    let mut step = Vector3::zeros();
-    for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-        if *value > CUT * largest {
-            step += vector * (vector.dot(&right) / value);
-        }
-    }
-    let at = from + DVec3::new(step.x, step.y, step.z);
+    let at = from + least_squares(planes.map(|plane| (plane.normal, -plane.distance(from))), CUT, 0.0);
     at.is_finite().then_some(at)
 }

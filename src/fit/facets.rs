@@ -3,14 +3,12 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::crease::SMOOTH;
 use crate::mesh::edges::Edges;
 use crate::mesh::{Plane, TriMesh};
 
 /// No facet.
 const NONE: u32 = u32::MAX;
-
-/// Facets that turn by more than this are different sides of a crease for a walk (cosine, 20°).
-const SMOOTH: f64 = 0.94;
 
 /// Most facets that a walk crosses.
 const LONGEST_WALK: usize = 24;

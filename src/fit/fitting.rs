@@ -3,12 +3,13 @@
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::crease::{Crease, SMOOTH, crease};
+use super::crease::{Crease, FLAT, SMOOTH, crease};
 use super::cut::{Spared, edges_of};
 use super::facets::Facets;
 use super::snap::snap;
-use super::surface::{Around, Surface, rounded};
+use super::surface::{Surface, rounded};
 use super::{FitOptions, FitReport};
+use crate::mesh::around::Around;
 
 /// A sharp crease nearer to the surface than this, h, is left out.
 const SHARP_SAG: f64 = 0.002;
@@ -142,8 +143,8 @@ impl<'a> Fitting<'a> {
             }
         }
         for &v in &back {
-            self.surface.mesh.positions[v as usize] = self.home.at(v);
-            self.surface.sides[v as usize] = self.home.sides[v as usize];
+            self.surface.put(v, self.home.place(v));
+            self.moved[v as usize] = false;
             dirty.extend(self.around.of(v));
         }
         let touched = |e: &[u32; 2]| back.contains(&e[0]) || back.contains(&e[1]);
@@ -155,7 +156,6 @@ impl<'a> Fitting<'a> {
         // What is cut in a triangle also depends on the triangles beside it.
         let corners = dirty.iter().flat_map(|&t| self.home.mesh.triangles[t as usize]);
         self.dirty = Some(corners.flat_map(|v| self.around.of(v)).copied().collect());
-        back.iter().for_each(|&v| self.moved[v as usize] = false);
     }
 
     /// What was done.
@@ -188,7 +188,7 @@ fn straddling(surface: &Surface, facets: &Facets<'_>) -> Vec<[u32; 2]> {
             && !y.is_empty()
             && x.iter().all(|p| {
                 let p = facets.plane(p).normal;
-                y.iter().all(|q| p.dot(facets.plane(q).normal) < 0.9986)
+                y.iter().all(|q| p.dot(facets.plane(q).normal) < FLAT)
             })
     };
     let edges = surface.mesh.triangles.par_iter().flat_map_iter(|&t| {

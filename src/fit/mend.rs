@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::crease::{Place, SMOOTH, nearest};
 use super::cut::Cut;
 use super::facets::{Facets, Sides};
-use super::surface::{agreement, rounded, shape};
+use super::surface::{agreement, faces_out, rounded, shape};
 use crate::mesh::HalfEdges;
 
 /// The least height, h, of the triangles that it makes.
@@ -52,7 +52,7 @@ pub(super) fn mend(cut: &mut Cut, facets: &Facets<'_>, h: f64, changed: &[u32]) 
 
 /// Whether a triangle faces the way of its facets and is not too thin.
 fn fits(facets: &Facets<'_>, h: f64, corners: &[Place; 3]) -> bool {
-    shape(corners.map(|c| c.at)).1 > LEAST_HEIGHT * h && agreement(facets, corners).is_none_or(|a| a > 0.0)
+    shape(corners.map(|c| c.at)).1 > LEAST_HEIGHT * h && faces_out(facets, corners)
 }
 
 /// Whether of triangles, fit or not before and after, more are fit and none no longer is.

@@ -4,7 +4,8 @@ use rayon::prelude::*;
 
 use super::crease::{Crease, Place, SMOOTH, crease, nearest};
 use super::facets::{Facets, Sides};
-use super::surface::{Around, Surface, agreement, rounded, shape};
+use super::surface::{Surface, faces_out, rounded, shape};
+use crate::mesh::around::Around;
 
 /// Vertices nearer to a crease than this, h, move onto it.
 const NEAR: f64 = 0.3;
@@ -95,9 +96,7 @@ fn wish(surface: &Surface, facets: &Facets<'_>, h: f64, fan: &[[u32; 2]]) -> Vec
 /// Whether what a triangle will be cut into faces the way of its facets and is not too thin.
 fn parts_fit(surface: &Surface, facets: &Facets<'_>, h: f64, t: u32) -> bool {
     let [a, b, c] = surface.places(t);
-    let fits = |corners: [Place; 3]| {
-        shape(corners.map(|c| c.at)).1 >= LEAST_HEIGHT * h && agreement(facets, &corners).is_none_or(|a| a > 0.0)
-    };
+    let fits = |corners: [Place; 3]| shape(corners.map(|c| c.at)).1 >= LEAST_HEIGHT * h && faces_out(facets, &corners);
     let on = |x: &Place, y: &Place| crease(facets, h, x, y).map(|c| c.place);
     let cuts = [on(&a, &b), on(&b, &c), on(&c, &a)];
     for turn in 0..3 {

@@ -80,39 +80,14 @@ pub(super) fn agreement(facets: &Facets<'_>, corners: &[Place; 3]) -> Option<f64
         .max_by(f64::total_cmp)
 }
 
+/// Whether a triangle does not face away from its facets.
+pub(super) fn faces_out(facets: &Facets<'_>, corners: &[Place; 3]) -> bool {
+    agreement(facets, corners).is_none_or(|a| a > 0.0)
+}
+
 /// A point whose coordinates any format holds unchanged.
 pub(super) fn rounded(p: DVec3) -> DVec3 {
     p.as_vec3().as_dvec3()
-}
-
-/// The triangles around each vertex.
-pub(super) struct Around {
-    starts: Vec<u32>,
-    triangles: Vec<u32>,
-}
-
-impl Around {
-    pub(super) fn new(mesh: &TriMesh) -> Self {
-        let mut starts = vec![0u32; mesh.positions.len() + 1];
-        mesh.triangles.iter().flatten().for_each(|&v| starts[v as usize] += 1);
-        let mut sum = 0;
-        for start in &mut starts {
-            sum += *start;
-            *start = sum;
-        }
-        let mut triangles = vec![0; sum as usize];
-        for (id, triangle) in mesh.triangles.iter().enumerate().rev() {
-            for &v in triangle {
-                starts[v as usize] -= 1;
-                triangles[starts[v as usize] as usize] = id as u32;
-            }
-        }
-        Self { starts, triangles }
-    }
-
-    pub(super) fn of(&self, vertex: u32) -> &[u32] {
-        &self.triangles[self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize]
-    }
 }
 
 /// Twice the area as a vector, and the smallest height.

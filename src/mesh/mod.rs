@@ -5,10 +5,12 @@
 //! a closed, oriented manifold while it is edited. [`ClosestTree`] finds the nearest triangle or segment, and
 //! [`Pseudonormals`] say on which side of it a point lies.
 
+pub(crate) mod around;
 mod closest;
 mod defects;
 pub(crate) mod edges;
 mod half_edges;
+pub(crate) mod least_squares;
 mod nearest_point;
 mod plane;
 mod predicates;

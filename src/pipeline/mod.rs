@@ -236,7 +236,7 @@ pub fn boolean(
 
     let mut report = solid::report(&lattice, &spans, hits, &votes);
     let sources = refine::sources(&surface, &facets, &soup);
-    report.orient = soup.reports.clone();
+    report.orient = soup.reports;
     report.fit = fitted;
     report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
     report.stages = stages.finish();
