@@ -244,6 +244,9 @@ pub struct SolidArgs {
     /// Leave edges and corners as the voxels have them, and all triangles
     #[arg(long)]
     pub no_fit: bool,
+    /// Build the whole surface anew from the voxels, also where the input is right as it is
+    #[arg(long, conflicts_with = "no_fit")]
+    pub rebuild: bool,
     /// How far flat parts may move while triangles are saved, or `off` to keep all [default: 0.003h]
     #[arg(long, value_name = "LEN|off", conflicts_with = "no_fit")]
     pub simplify: Option<Simplify>,

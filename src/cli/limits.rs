@@ -17,7 +17,7 @@ pub fn broken(report: &RunReport, max_memory: Option<u64>) -> Vec<String> {
     let mut sentences = Vec::new();
     if let Some(pipeline) = &report.pipeline {
         let (thin, vote) = (&pipeline.thin, &pipeline.vote);
-        if share(thin.lost_spans, thin.spans) > TOO_MANY_LOST {
+        if share(thin.lost_spans, thin.spans) > TOO_MANY_LOST && !pipeline.kept_all() {
             sentences.push(format!(
                 "{} of the walls are so thin that they pass between voxels: the voxel is too large for this shape",
                 words::percent(thin.lost_spans, thin.spans)

@@ -85,7 +85,7 @@ fn trust(rule: VoteRule) -> Trust {
     if rule == VoteRule::Winding { Trust::All } else { Trust::Sure }
 }
 
-/// What `--no-fit` and `--simplify` ask for. Colours that vary within triangles would be smeared over the
+/// What `--no-fit`, `--rebuild` and `--simplify` ask for. Colours that vary within triangles would be smeared over the
 /// large triangles of simplified flat parts, so with them all triangles are kept unless it is asked for.
 fn fit(args: &SolidArgs, scale: &Scale, inputs: &[Input]) -> Result<Option<FitOptions>, Failure> {
     let varying = |input: &Input| matches!(input.loaded.colours, Some(Colours::Vertices(_) | Colours::Corners(_)));
@@ -96,7 +96,8 @@ fn fit(args: &SolidArgs, scale: &Scale, inputs: &[Input]) -> Result<Option<FitOp
         _ if inputs.iter().any(varying) => 0.0,
         _ => usual.tolerance,
     };
-    Ok((!args.no_fit).then_some(FitOptions { tolerance, ..usual }))
+    let kept_tolerance = if args.simplify.is_some() { tolerance } else { usual.kept_tolerance.min(tolerance) };
+    Ok((!args.no_fit).then_some(FitOptions { keep: !args.rebuild, tolerance, kept_tolerance, ..usual }))
 }
 
 /// The options as the report states them, after defaults.

@@ -96,8 +96,15 @@ fn done(pipeline: &Report) -> Vec<String> {
         let share = words::percent(pipeline.ldi.silent_rays, pipeline.ldi.rays);
         parts.push(format!("{share} of the rays met a hole or a crack; others decided in their place"));
     }
-    parts.push("the surface was built anew".into());
-    if let Some(fit) = &pipeline.fit {
+    match pipeline.fit.as_ref().filter(|fit| fit.kept > 0) {
+        Some(fit) if fit.kept == fit.of => parts.push("every triangle was kept as it is".into()),
+        Some(fit) => {
+            let (kept, of) = (words::count(fit.kept), words::plural(fit.of, "triangle"));
+            parts.push(format!("{kept} of {of} kept as they are; the surface between them was built anew"));
+        }
+        None => parts.push("the surface was built anew".into()),
+    }
+    if let Some(fit) = pipeline.fit.as_ref().filter(|fit| fit.kept < fit.of) {
         let points = words::plural(fit.inserted + fit.moved, "point");
         let given_up = match fit.given_up {
             0 => String::new(),
@@ -128,7 +135,7 @@ fn thin(pipeline: &Report, unit: UnitName<'_>) -> Option<String> {
     let told = thin.thin_spans as f64 > THIN_WALLS_TOLD * thin.spans as f64;
     let share = words::percent(thin.thin_spans, thin.spans);
     let keeps = words::with_unit(&words::rounded_down(keeps), unit).replace(' ', "");
-    told.then(|| {
+    (told && !pipeline.kept_all()).then(|| {
         format!("{share} of the walls are under 2 voxels thick and may have suffered; --voxel {keeps} would keep them")
     })
 }

@@ -11,7 +11,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::crease::{Crease, FLAT, Place, crease, nearest};
 use super::facets::{Facets, Sides};
-use super::surface::{Surface, rounded, shape};
+use super::surface::{NOT_KEPT, Surface, rounded, shape};
 
 /// A corner nearer to a point of a crease than this, h, is that point.
 const SAME: f64 = 0.02;
@@ -23,6 +23,14 @@ pub(super) struct Cut {
     pub origin: Vec<u32>,
     /// Triangles before cutting in which more than their own edges was cut.
     pub centred: Vec<u32>,
+}
+
+impl Cut {
+    /// A surface that is not cut yet.
+    pub(super) fn of(surface: &Surface) -> Self {
+        let count = surface.mesh.triangles.len() as u32;
+        Self { surface: surface.clone(), origin: (0..count).collect(), centred: Vec::new() }
+    }
 }
 
 /// What must be left alone.
@@ -45,8 +53,7 @@ pub(super) fn cut(
     wanted: impl Fn(&Crease) -> bool + Sync,
 ) -> Cut {
     let first = surface.mesh.positions.len() as u32;
-    let count = surface.mesh.triangles.len() as u32;
-    let mut cut = Cut { surface: surface.clone(), origin: (0..count).collect(), centred: Vec::new() };
+    let mut cut = Cut::of(surface);
     subdivide(&mut cut, points);
     let again: Vec<([u32; 2], Crease)> = second_points(&cut, facets, h, first, spared, wanted);
     let edges: FxHashSet<[u32; 2]> = again.iter().map(|p| p.0).collect();
@@ -87,12 +94,13 @@ fn second_points(
 }
 
 /// Cuts triangles at points on their edges.
-fn subdivide(cut: &mut Cut, points: &[([u32; 2], Crease)]) {
-    let Cut { surface: Surface { mesh, sides }, origin, .. } = cut;
+pub(super) fn subdivide(cut: &mut Cut, points: &[([u32; 2], Crease)]) {
+    let Cut { surface: Surface { mesh, sides, kept, facets }, origin, .. } = cut;
     let first = mesh.positions.len() as u32;
     let ids: FxHashMap<[u32; 2], u32> = points.iter().zip(first..).map(|(&(edge, _), id)| (edge, id)).collect();
     mesh.positions.extend(points.iter().map(|(_, c)| rounded(c.place.at)));
     sides.extend(points.iter().map(|(_, c)| c.place.sides));
+    kept.resize(mesh.positions.len(), NOT_KEPT);
     let on = |a: u32, b: u32| ids.get(&[a.min(b), a.max(b)]).copied();
     let cuts_of = |&[a, b, c]: &[u32; 3]| {
         let cuts = [on(a, b), on(b, c), on(c, a)];
@@ -101,13 +109,16 @@ fn subdivide(cut: &mut Cut, points: &[([u32; 2], Crease)]) {
     let cuts: Vec<Option<[Option<u32>; 3]>> = mesh.triangles.par_iter().map(cuts_of).collect();
     let mut triangles = Vec::with_capacity(mesh.triangles.len() + 2 * points.len());
     let mut origins = Vec::with_capacity(triangles.capacity());
-    for ((&corners, cuts), &id) in mesh.triangles.iter().zip(cuts).zip(origin.iter()) {
+    let mut parts_of = Vec::with_capacity(triangles.capacity());
+    for (((&corners, cuts), &id), &facet) in mesh.triangles.iter().zip(cuts).zip(origin.iter()).zip(facets.iter()) {
         match cuts {
             Some(cuts) => split(corners, cuts, &mesh.positions, &mut triangles),
             None => triangles.push(corners),
         }
         origins.resize(triangles.len(), id);
+        parts_of.resize(triangles.len(), facet);
     }
+    *facets = parts_of;
     mesh.triangles = triangles;
     *origin = origins;
 }
@@ -129,11 +140,11 @@ fn raise_corners(cut: &mut Cut, facets: &Facets<'_>, h: f64, first: u32, spared:
             Some(_) => continue,
             None => {
                 let ([a, b, c], z) = (corners, cut.surface.mesh.positions.len() as u32);
-                cut.surface.mesh.positions.push(place.at);
-                cut.surface.sides.push(place.sides);
+                cut.surface.add(place, NOT_KEPT);
                 cut.surface.mesh.triangles[t as usize] = [a, b, z];
                 cut.surface.mesh.triangles.extend([[b, c, z], [c, a, z]]);
                 cut.origin.extend([cut.origin[t as usize]; 2]);
+                cut.surface.facets.extend([cut.surface.facets[t as usize]; 2]);
             }
         }
         cut.centred.push(cut.origin[t as usize]);

@@ -4,6 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::crease::SMOOTH;
+use crate::mesh::around::Around;
 use crate::mesh::edges::Edges;
 use crate::mesh::{Plane, TriMesh};
 
@@ -90,6 +91,8 @@ pub struct Facets<'a> {
     /// The triangle across each edge (corner k to the next) and whether it is turned the other
     /// way, or [`NONE`].
     across: Vec<[(u32, bool); 3]>,
+    /// The triangles around each vertex.
+    around: Around,
     /// A number for each triangle, or none: simplification keeps different ones apart.
     classes: Vec<u32>,
 }
@@ -111,7 +114,7 @@ impl<'a> Facets<'a> {
             across[a as usize / 3][a as usize % 3] = (b / 3, turned);
             across[b as usize / 3][b as usize % 3] = (a / 3, turned);
         });
-        Self { mesh, planes, across, classes: Vec::new() }
+        Self { mesh, planes, across, around: Around::new(mesh), classes: Vec::new() }
     }
 
     /// With a number for each triangle; simplification keeps apart what has different ones.
@@ -128,6 +131,22 @@ impl<'a> Facets<'a> {
     /// The class of a side's triangle.
     pub(super) fn class(&self, side: Side) -> u32 {
         self.classes.get(side.facet() as usize).copied().unwrap_or(u32::MAX)
+    }
+
+    /// The source.
+    pub(super) fn mesh(&self) -> &TriMesh {
+        self.mesh
+    }
+
+    /// The triangles around a vertex of the source.
+    pub(super) fn around(&self, vertex: u32) -> &[u32] {
+        self.around.of(vertex)
+    }
+
+    /// The triangle across an edge (corner k to the next) of a triangle; `None` where there is none, or
+    /// several.
+    pub(super) fn across(&self, facet: u32, edge: usize) -> Option<u32> {
+        Some(self.across[facet as usize][edge].0).filter(|&other| other != NONE)
     }
 
     /// The number of source triangles: facets from here on have no extent.

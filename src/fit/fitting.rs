@@ -7,7 +7,7 @@ use super::crease::{Crease, FLAT, SMOOTH, crease};
 use super::cut::{Spared, edges_of};
 use super::facets::Facets;
 use super::snap::snap;
-use super::surface::{Surface, rounded};
+use super::surface::{NOT_KEPT, Surface, rounded};
 use super::{FitOptions, FitReport};
 use crate::mesh::around::Around;
 
@@ -70,7 +70,7 @@ impl<'a> Fitting<'a> {
             surface,
             moved,
             points,
-            spared: Spared::default(),
+            spared: Spared { triangles: kept_triangles(home), ..Spared::default() },
             dirty: None,
             times_bad: FxHashMap::default(),
             snapped: snapped.len(),
@@ -160,14 +160,17 @@ impl<'a> Fitting<'a> {
 
     /// What was done.
     pub(super) fn report(&self) -> FitReport {
-        FitReport { moved: self.snapped, inserted: self.points.len(), given_up: self.given_up }
+        FitReport { moved: self.snapped, inserted: self.points.len(), given_up: self.given_up, ..FitReport::default() }
     }
 }
 
 /// Moves vertices that lie beside the plane of their one facet onto it.
 fn flatten(surface: &mut Surface, facets: &Facets<'_>, h: f64) -> Vec<u32> {
-    let (sides, positions) = (&surface.sides, &mut surface.mesh.positions);
+    let (sides, kept, positions) = (&surface.sides, &surface.kept, &mut surface.mesh.positions);
     let moved = positions.par_iter_mut().zip(sides).enumerate().filter_map(|(v, (at, sides))| {
+        if kept[v] != NOT_KEPT {
+            return None;
+        }
         let mut own = sides.iter();
         let (Some(side), None) = (own.next(), own.next()) else { return None };
         let plane = facets.plane(side);
@@ -180,12 +183,19 @@ fn flatten(surface: &mut Surface, facets: &Facets<'_>, h: f64) -> Vec<u32> {
     moved.collect()
 }
 
+/// The triangles that are the source's.
+fn kept_triangles(surface: &Surface) -> FxHashSet<u32> {
+    (0..surface.mesh.triangles.len() as u32).filter(|&t| surface.is_kept_triangle(t)).collect()
+}
+
 /// The edges between different facets.
 fn straddling(surface: &Surface, facets: &Facets<'_>) -> Vec<[u32; 2]> {
     let differ = |a: u32, b: u32| {
         let (x, y) = (surface.sides[a as usize], surface.sides[b as usize]);
-        !x.is_empty()
-            && !y.is_empty()
+        let known = !x.is_empty() && !y.is_empty();
+        let is_kept = surface.is_kept(a) && surface.is_kept(b);
+        known
+            && !is_kept
             && x.iter().all(|p| {
                 let p = facets.plane(p).normal;
                 y.iter().all(|q| p.dot(facets.plane(q).normal) < FLAT)

@@ -114,7 +114,7 @@ impl Mending<'_> {
             let own = self.cut.surface.place(v);
             let neighbours: Vec<u32> =
                 self.edges.ring(v).map(|e| self.edges.target(e)).filter(|&w| self.lies_on_all(w, &own.sides)).collect();
-            if own.sides.iter().count() != 2 || neighbours.len() < 2 {
+            if self.cut.surface.is_kept(v) || own.sides.iter().count() != 2 || neighbours.len() < 2 {
                 continue;
             }
             let before: Vec<bool> = self.edges.ring(v).map(|e| self.fits(self.edges.triangle(e / 3))).collect();
@@ -143,6 +143,9 @@ impl Mending<'_> {
 
     fn turn_fits(&self, e: u32) -> bool {
         let (a, b) = (self.edges.origin(e), self.edges.target(e));
+        if self.cut.surface.is_kept(a) && self.cut.surface.is_kept(b) {
+            return false;
+        }
         let (c, d) = (self.edges.apex(e), self.edges.apex(self.edges.twin(e)));
         let known =
             |t: [u32; 3]| agreement(self.facets, &t.map(|v| self.cut.surface.place(v))).is_some_and(|a| a > 0.5);
@@ -153,6 +156,9 @@ impl Mending<'_> {
     /// pieces that the origin lies on.
     fn collapse_fits(&self, e: u32) -> bool {
         let (from, to) = (self.edges.origin(e), self.edges.target(e));
+        if self.cut.surface.is_kept(from) {
+            return false;
+        }
         let kept = self.lies_on_all(to, &self.cut.surface.sides[from as usize]);
         let gone = [e / 3, self.edges.twin(e) / 3];
         let after = |t: u32| {
@@ -169,6 +175,7 @@ impl Mending<'_> {
         let mut renumbered = Vec::with_capacity(touched.len());
         let mut triangles = Vec::with_capacity(self.edges.live_triangles());
         let mut origin = Vec::with_capacity(triangles.capacity());
+        let mut facets = Vec::with_capacity(triangles.capacity());
         let mut next = touched.iter().peekable();
         for t in 0..self.edges.triangle_ids() as u32 {
             let is_touched = next.next_if_eq(&&t).is_some();
@@ -180,9 +187,11 @@ impl Mending<'_> {
             }
             triangles.push(self.edges.triangle(t));
             origin.push(self.cut.origin[t as usize]);
+            facets.push(self.cut.surface.facets[t as usize]);
             number += 1;
         }
         self.cut.surface.mesh.triangles = triangles;
+        self.cut.surface.facets = facets;
         self.cut.origin = origin;
         renumbered
     }

@@ -7,6 +7,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::FitOptions;
 use super::facets::Facets;
 use super::quadric::Quadric;
 use super::surface::{Surface, agreement, shape};
@@ -48,6 +49,8 @@ struct Work<'a> {
     at: Vec<DVec3>,
     /// Squared tolerance, h².
     most: f64,
+    /// The same for vertices of the source.
+    most_kept: f64,
 }
 
 /// A collapse that may be done.
@@ -58,20 +61,20 @@ struct Wish {
     half_edge: u32,
 }
 
-/// [`collapsed`] within `tolerance` (h; 0 for not at all) as often as it takes until no triangles meet:
+/// [`collapsed`] within the tolerance (0 for not at all) as often as it takes until no triangles meet:
 /// each time the neighbourhoods of those that do stay as they were. `None` when the surface as given is
 /// no valid solid.
 pub(super) fn simplified(
     surface: &Surface,
     facets: &Facets<'_>,
     h: f64,
-    tolerance: f64,
+    options: &FitOptions,
     progress: &Progress,
 ) -> Result<Option<Surface>, Stopped> {
     let mut frozen = class_borders(surface, facets);
-    if tolerance > 0.0 {
+    if options.tolerance > 0.0 {
         for round in 0..MOST_ROUNDS {
-            let simple = collapsed(surface, facets, h, tolerance, &frozen, progress)?;
+            let simple = collapsed(surface, facets, h, options, &frozen, progress)?;
             let bad = intersecting_triangles(&simple.mesh, progress)?;
             if bad.is_empty() && is_solid(&simple.mesh, false, progress)? {
                 return Ok(Some(simple));
@@ -107,7 +110,7 @@ fn class_borders(surface: &Surface, facets: &Facets<'_>) -> Vec<bool> {
     let mut border = vec![false; surface.mesh.positions.len()];
     if facets.has_classes() {
         for t in &surface.mesh.triangles {
-            let mut classes = t.iter().flat_map(|&v| surface.sides[v as usize].iter()).map(|s| facets.class(s));
+            let mut classes = t.iter().flat_map(|&v| surface.facets_at(facets, v, DVec3::Z)).map(|s| facets.class(s));
             let first = classes.next();
             if classes.any(|class| Some(class) != first) {
                 t.iter().for_each(|&v| border[v as usize] = true);
@@ -117,12 +120,12 @@ fn class_borders(surface: &Surface, facets: &Facets<'_>) -> Vec<bool> {
     border
 }
 
-/// Collapses edges as long as the surface stays within `tolerance` (h) of where it was. Vertices in `frozen` stay.
+/// Collapses edges as long as the surface stays within the tolerance of where it was. Vertices in `frozen` stay.
 fn collapsed(
     surface: &Surface,
     facets: &Facets<'_>,
     h: f64,
-    tolerance: f64,
+    options: &FitOptions,
     frozen: &[bool],
     progress: &Progress,
 ) -> Result<Surface, Stopped> {
@@ -131,7 +134,8 @@ fn collapsed(
     };
     let at: Vec<DVec3> = surface.mesh.positions.par_iter().map(|p| *p / h).collect();
     let quadrics = quadrics(surface, facets, h, &edges);
-    let mut work = Work { surface, facets, edges, quadrics, at, most: tolerance * tolerance };
+    let (most, most_kept) = (options.tolerance.powi(2), options.kept_tolerance.powi(2));
+    let mut work = Work { surface, facets, edges, quadrics, at, most, most_kept };
     let mut active: Vec<u32> = (0..work.at.len() as u32).filter(|&v| !frozen[v as usize]).collect();
     let mut locked = vec![0u32; work.at.len()];
     for pass in 1..=MOST_PASSES as u32 {
@@ -163,7 +167,10 @@ fn collapsed(
     let compacted = work.edges.compacted();
     let positions = compacted.vertices.iter().map(|&v| surface.at(v)).collect();
     let sides = compacted.vertices.iter().map(|&v| surface.sides[v as usize]).collect();
-    Ok(Surface { mesh: TriMesh { positions, triangles: compacted.triangles }, sides })
+    let kept = compacted.vertices.iter().map(|&v| surface.kept[v as usize]).collect();
+    let live = (0..work.edges.triangle_ids()).filter(|&t| work.edges.is_live_triangle(t as u32));
+    let facets = live.map(|t| surface.facets[t]).collect();
+    Ok(Surface { mesh: TriMesh { positions, triangles: compacted.triangles }, sides, kept, facets })
 }
 
 /// For each vertex the distances from the planes of its triangles.
@@ -186,7 +193,8 @@ fn plane(surface: &Surface, facets: &Facets<'_>, h: f64, t: usize) -> Option<(DV
     let normal = normal.normalize_or_zero();
     let on = |s: &super::Side| corners.iter().all(|c| facets.plane(*s).distance(c.at).abs() < ON_FACET * h);
     let agrees = |s: &super::Side| facets.plane(*s).normal.dot(normal);
-    let known = corners.iter().flat_map(|c| c.sides.iter()).filter(on).max_by(|a, b| agrees(a).total_cmp(&agrees(b)));
+    let around = surface.mesh.triangles[t].into_iter().flat_map(|v| surface.facets_at(facets, v, normal));
+    let known = around.filter(on).max_by(|a, b| agrees(a).total_cmp(&agrees(b)));
     match known {
         Some(side) => Some((facets.plane(side).normal, facets.plane(side).normal * facets.plane(side).offset)),
         None => (height > FLAT_HEIGHT * h).then_some((normal, corners[0].at)),
@@ -224,6 +232,9 @@ impl Work<'_> {
     fn cost(&self, vertex: u32, to: u32) -> f64 {
         let p = self.at[to as usize];
         let cost = self.quadrics[vertex as usize].at(p) + self.quadrics[to as usize].at(p);
+        if self.surface.is_kept(vertex) && cost > self.most_kept {
+            return f64::INFINITY;
+        }
         let length = p.distance_squared(self.at[vertex as usize]);
         cost + 1e-9 * length.min(1e3)
     }

@@ -27,7 +27,7 @@ pub(super) fn snap(
 ) -> Vec<u32> {
     let mut ends: Vec<[u32; 2]> = edges.iter().flat_map(|&[a, b]| [[a, b], [b, a]]).collect();
     ends.par_sort_unstable();
-    let fans: Vec<&[[u32; 2]]> = ends.chunk_by(|a, b| a[0] == b[0]).collect();
+    let fans: Vec<&[[u32; 2]]> = ends.chunk_by(|a, b| a[0] == b[0]).filter(|fan| !surface.is_kept(fan[0][0])).collect();
     let mut wishes: Vec<(Vec<Place>, &[[u32; 2]])> = fans
         .par_iter()
         .map(|fan| (wish(surface, facets, h, fan), *fan))

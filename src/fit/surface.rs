@@ -6,6 +6,9 @@ use super::crease::{Place, SMOOTH};
 use super::facets::{Facets, Side, Sides};
 use crate::mesh::TriMesh;
 
+/// A triangle whose centre lies this part of its height beyond the source is not on it.
+const OFF: f64 = 0.05;
+
 /// A surface whose vertices know the facets they lie on.
 #[derive(Debug, Clone, Default)]
 pub struct Surface {
@@ -13,9 +16,33 @@ pub struct Surface {
     pub mesh: TriMesh,
     /// One for each vertex.
     pub sides: Vec<Sides>,
+    /// For each vertex the vertex of the source that it is, or [`NOT_KEPT`].
+    pub kept: Vec<u32>,
+    /// For each triangle the triangle of the source that it was, before flat parts were simplified, or [`NOT_KEPT`].
+    pub facets: Vec<u32>,
 }
 
+/// A vertex or triangle that is none of the source's.
+pub const NOT_KEPT: u32 = u32::MAX;
+
 impl Surface {
+    /// A surface none of whose vertices is one of the source's.
+    pub fn new(mesh: TriMesh, sides: Vec<Sides>) -> Self {
+        let (kept, facets) = (vec![NOT_KEPT; mesh.positions.len()], vec![NOT_KEPT; mesh.triangles.len()]);
+        Self { mesh, sides, kept, facets }
+    }
+
+    pub(super) fn add(&mut self, place: Place, kept: u32) {
+        self.mesh.positions.push(place.at);
+        self.sides.push(place.sides);
+        self.kept.push(kept);
+    }
+
+    /// Whether a vertex is one of the source's.
+    pub(super) fn is_kept(&self, vertex: u32) -> bool {
+        self.kept[vertex as usize] != NOT_KEPT
+    }
+
     pub(super) fn at(&self, vertex: u32) -> DVec3 {
         self.mesh.positions[vertex as usize]
     }
@@ -29,6 +56,11 @@ impl Surface {
         Place { at: self.at(vertex), sides: self.sides[vertex as usize] }
     }
 
+    /// Whether all corners are the source's, so that the triangle is not the fit's business.
+    pub(super) fn is_kept_triangle(&self, t: u32) -> bool {
+        self.mesh.triangles[t as usize].iter().all(|&v| self.is_kept(v))
+    }
+
     /// Whether the corners of a triangle have facets of one smooth piece, or one of them none.
     pub(super) fn is_smooth(&self, facets: &Facets<'_>, t: u32) -> bool {
         let [a, b, c] = self.mesh.triangles[t as usize].map(|v| self.sides[v as usize]);
@@ -40,24 +72,43 @@ impl Surface {
         a.iter().any(|p| b.iter().any(|q| near(p, q) && c.iter().any(|r| near(q, r) && near(p, r))))
     }
 
+    /// The facets around a vertex, as seen by a triangle with this normal: all of them for one of the source's, which has
+    /// more than [`Sides`] hold.
+    pub(super) fn facets_at(&self, facets: &Facets<'_>, vertex: u32, normal: DVec3) -> Vec<Side> {
+        if !self.is_kept(vertex) {
+            return self.sides[vertex as usize].iter().collect();
+        }
+        let facing = |&t: &u32| Side::new(t, facets.plane(Side::new(t, false)).normal.dot(normal) < 0.0);
+        facets.around(self.kept[vertex as usize]).iter().map(facing).collect()
+    }
+
     /// The facet that a triangle lies on; `None` where nothing is known.
     pub fn facet(&self, facets: &Facets<'_>, t: u32) -> Option<u32> {
         let corners = self.places(t);
         let centre = corners.iter().map(|c| c.at).sum::<DVec3>() / 3.0;
         let normal = shape(corners.map(|c| c.at)).0.normalize_or_zero();
-        let known = corners.iter().filter(|c| !c.sides.is_empty()).count();
+        let own = self.facets[t as usize];
+        if own != NOT_KEPT {
+            let side = Side::new(own, facets.plane(Side::new(own, false)).normal.dot(normal) < 0.0);
+            return Some(facets.walk(side, centre).0.facet());
+        }
+        let around = self.mesh.triangles[t as usize].map(|v| self.facets_at(facets, v, normal));
+        let known = around.iter().filter(|sides| !sides.is_empty()).count();
         // A facet that all corners with any share is it; else the one that faces the same way.
-        let votes = |side: Side| corners.iter().filter(|c| c.sides.iter().any(|s| s == side)).count() == known;
+        let votes = |side: Side| around.iter().filter(|sides| sides.contains(&side)).count() == known;
         let off = |side: Side| {
             let plane = facets.plane(side);
             (!votes(side), 1.0 - plane.normal.dot(normal))
         };
-        let all = corners.iter().flat_map(|c| c.sides.iter());
-        let best = all.min_by(|p, q| {
+        let best = around.iter().flatten().copied().min_by(|p, q| {
             let (p, q) = (off(*p), off(*q));
             p.0.cmp(&q.0).then(p.1.total_cmp(&q.1))
         })?;
-        Some(facets.walk(best, centre).0.facet())
+        let (side, beyond) = facets.walk(best, centre);
+        // Between vertices of the source there may be nothing of it: they do not know the lids that end on them.
+        let spans_nothing = self.is_kept_triangle(t)
+            && (facets.plane(best).normal.dot(normal) < SMOOTH || beyond > OFF * shape(corners.map(|c| c.at)).1);
+        (!spans_nothing).then(|| side.facet())
     }
 
     /// The corners of a triangle.

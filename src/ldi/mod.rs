@@ -2,6 +2,7 @@
 //! (Bærentzen §3), and the spans of the result along them (§3.1, §5.1).
 
 mod crossings;
+mod evidence;
 mod expression;
 mod layers;
 mod raster;
@@ -9,6 +10,7 @@ mod spans;
 mod thin;
 
 pub use crossings::edge_crossing;
+pub use evidence::Evidence;
 pub use expression::Expression;
 pub use layers::{Hit, Layers, MAX_CROSSINGS, MAX_TRIANGLES};
 pub use raster::{MAX_VOXELS, SNAP_BITS, rasterise, snap};

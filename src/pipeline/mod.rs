@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use crate::contour::{ContourOptions, contour};
 use crate::fit::{Facets, FitOptions, fit};
 use crate::lattice::Lattice;
-use crate::ldi::{Expression, Spans, ldis, spans};
+use crate::ldi::{Evidence, Expression, Spans, ldis, spans};
 use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
 use crate::progress::{Progress, Stopped};
@@ -206,8 +206,10 @@ pub fn boolean(
     soup.turn_patches(&mut layers, options.orient, progress)?;
     let hits = solid::count(&layers);
     stages.begin("spans")?;
+    let mut evidence = Evidence::new(&layers, soup.mesh.triangles.len());
     let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, expression));
     let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
+    evidence.add(&spans);
     solid::refuse_scattered(&spans, hits)?;
     stages.begin("vote")?;
     let winding = Winding::new(&soup.mesh, &soup.operands, &lattice, progress);
@@ -229,8 +231,8 @@ pub fn boolean(
     let mut fitted = None;
     if let Some(options) = &options.fit {
         stages.begin("fit")?;
-        let (sharp, report) = fit(&surface, &facets, lattice.h, options, progress)?;
-        surface = sharp;
+        let (fit, report) = fit(&surface, &facets, &evidence, lattice.h, options, progress)?;
+        surface = fit;
         fitted = Some(report);
     }
 
@@ -239,6 +241,7 @@ pub fn boolean(
     report.orient = soup.reports;
     report.fit = fitted;
     report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
+    report.warnings = solid::warnings(&report);
     report.stages = stages.finish();
     Ok(Outcome { mesh: surface.mesh, sources, lattice, report })
 }

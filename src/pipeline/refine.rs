@@ -62,7 +62,7 @@ pub(super) fn merged(
     let merge = match (options.collapse, options.fit.is_some()) {
         (false, _) => {
             let sides = contour.vertices.iter().map(|v| Sides::of([side(v, facets)])).collect();
-            return Ok(Surface { mesh: contour.mesh, sides });
+            return Ok(Surface::new(contour.mesh, sides));
         }
         (true, true) => Merge::Flat { within: FLAT },
         (true, false) => Merge::All,
@@ -73,7 +73,7 @@ pub(super) fn merged(
     };
     let collapsed = collapse_same_voxel(contour, lattice, &plane, merge, progress)?;
     let sides = sides(&collapsed, facets);
-    Ok(Surface { mesh: collapsed.contour.mesh, sides })
+    Ok(Surface::new(collapsed.contour.mesh, sides))
 }
 
 /// The side of the facet that a vertex of the raw contour lies on.

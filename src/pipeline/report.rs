@@ -31,6 +31,13 @@ pub struct Report {
     pub warnings: Vec<String>,
 }
 
+impl Report {
+    /// Whether the surface is the operands' own, untouched by voxels.
+    pub fn kept_all(&self) -> bool {
+        self.fit.as_ref().is_some_and(|fit| fit.of > 0 && fit.kept == fit.of)
+    }
+}
+
 /// Rays and crossings of all 13 directions.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct LdiReport {

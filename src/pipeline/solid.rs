@@ -45,7 +45,7 @@ pub(super) fn crossings<'a>(
 /// The parts of the report that come from the rays and the votes.
 pub(super) fn report(lattice: &Lattice, spans: &[Spans], count: Count, votes: &Grid<Votes>) -> Report {
     let lengths = lengths(spans);
-    let mut report = Report {
+    Report {
         voxel: lattice.h,
         dims: lattice.dims.to_array(),
         ldi: LdiReport {
@@ -57,9 +57,7 @@ pub(super) fn report(lattice: &Lattice, spans: &[Spans], count: Count, votes: &G
         vote: doubts(votes, lattice),
         thin: thin(&lengths, lattice.h),
         ..Report::default()
-    };
-    report.warnings = warnings(&report);
-    report
+    }
 }
 
 fn thin(lengths: &Lengths, h: f64) -> ThinReport {
@@ -80,11 +78,12 @@ fn thin(lengths: &Lengths, h: f64) -> ThinReport {
 const MANY_LOST: f64 = 0.02;
 const MANY_SILENT: f64 = 0.25;
 
-fn warnings(report: &Report) -> Vec<String> {
+/// What a user should know of a report that is complete but for this.
+pub(super) fn warnings(report: &Report) -> Vec<String> {
     let mut warnings = Vec::new();
     let share = |part: usize, all: usize| part as f64 / all.max(1) as f64;
     let lost = share(report.thin.lost_spans, report.thin.spans);
-    if lost > MANY_LOST {
+    if lost > MANY_LOST && !report.kept_all() {
         warnings.push(format!(
             "{:.0} % of the rays through the solid pass walls that fall between voxels{}",
             100.0 * lost,

@@ -193,11 +193,14 @@ fn the_map_shows_what_closes_holes_and_the_fit_has_switches() {
     assert_eq!(map["triangles"], few);
     let text = String::from_utf8_lossy(&std::fs::read(folder.path().join("map.ply")).expect("a map")).into_owned();
     assert!(text.contains("property uchar red"), "the map has colours");
-    let (all, _) = repair("--simplify off");
+    assert_eq!(report["pipeline"]["fit"]["kept"], 10);
+    let (all, report) = repair("--simplify off --rebuild");
+    assert_eq!(report["pipeline"]["fit"]["kept"], 0);
     let (raw, report) = repair("--no-fit");
     assert!(all > 1000 && raw > 1000, "{all} and {raw} triangles");
     assert!(report["pipeline"]["fit"].is_null());
     run_in(&folder, "repair testdata/open_cube.off -o OUT/out.off --no-fit --simplify off").exits(2);
+    run_in(&folder, "repair testdata/open_cube.off -o OUT/out.off --no-fit --rebuild").exits(2);
     run_in(&folder, "repair testdata/open_cube.off -o OUT/out.ply --map OUT/out.ply").exits(2);
     run_in(&folder, "repair testdata/open_cube.off -o OUT/out.ply --map testdata/open_cube.off").exits(2);
 }

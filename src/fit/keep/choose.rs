@@ -1,0 +1,157 @@
+//! Which source triangles bound the solid by themselves.
+
+use rayon::prelude::*;
+
+use super::super::facets::Facets;
+use super::super::safeguard::coincident;
+use super::super::surface::{rounded, shape};
+use crate::ldi::Evidence;
+use crate::mesh::edges::{Edges, Union};
+use crate::mesh::{TriMesh, intersecting_triangles};
+use crate::progress::{Progress, Stopped};
+
+/// The least height of a kept triangle, h.
+const LEAST_HEIGHT: f64 = 1e-7;
+
+/// The share of a patch's crossings that may not bound the solid: those where a ray touches an edge.
+const MOST_DROPPED: f64 = 0.02;
+
+/// The share of a patch's crossings that must bound the solid; the others are on silent rays.
+const LEAST_BOUNDING: f64 = 0.2;
+
+/// The source triangles that are kept.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Kept {
+    /// The source, its coordinates rounded to what any format holds.
+    pub mesh: TriMesh,
+    /// Whether a triangle is kept.
+    pub is: Vec<bool>,
+    /// Whether the solid lies on the side of its normal.
+    pub reversed: Vec<bool>,
+    /// Whether a triangle meets another one.
+    pub meets: Vec<bool>,
+}
+
+impl Kept {
+    /// The corners of a triangle in the order in which they run around the solid's outside.
+    pub(super) fn corners(&self, facet: u32) -> [u32; 3] {
+        let [a, b, c] = self.mesh.triangles[facet as usize];
+        if self.reversed[facet as usize] { [a, c, b] } else { [a, b, c] }
+    }
+
+    /// The kept triangles.
+    pub(super) fn facets(&self) -> Vec<u32> {
+        (0..self.is.len() as u32).filter(|&t| self.is[t as usize]).collect()
+    }
+
+    /// Lets go of triangles until the others are a manifold with a border: at most two at an edge, that run
+    /// against each other, and one fan at a vertex.
+    pub(super) fn tidy(&mut self) {
+        loop {
+            let facets = self.facets();
+            let triangles: Vec<[u32; 3]> = facets.iter().map(|&t| self.corners(t)).collect();
+            let edges = Edges::new(&triangles, self.mesh.positions.len());
+            let mut gone: Vec<u32> = Vec::new();
+            edges.each(|edge| {
+                let mut halves = edge.halves();
+                let fine = match (edge.count(), halves.next(), halves.next()) {
+                    (1, ..) => true,
+                    (2, Some(a), Some(b)) => edges.runs_up(a) != edges.runs_up(b),
+                    _ => false,
+                };
+                if !fine {
+                    gone.extend(edge.halves().map(|half| facets[half as usize / 3]));
+                }
+            });
+            let fans = edges.connectivity().fans;
+            let torn = |t: &[u32; 3]| t.iter().any(|&v| fans[v as usize] > 1);
+            gone.extend(triangles.iter().zip(&facets).filter(|(t, _)| torn(t)).map(|(_, &facet)| facet));
+            if gone.is_empty() {
+                return;
+            }
+            gone.iter().for_each(|&t| self.is[t as usize] = false);
+        }
+    }
+}
+
+/// The triangles that meet no other and that, patch by patch, bound the solid by the word of the rays. A
+/// patch has the solid on one side all over, unless it is open; so one word of all its rays will do, and where
+/// they differ, what is near those that say no is left out and the rest asked again.
+pub(super) fn chosen(facets: &Facets<'_>, evidence: &Evidence, h: f64, progress: &Progress) -> Result<Kept, Stopped> {
+    let source = facets.mesh();
+    let positions = source.positions.iter().map(|&p| rounded(p)).collect();
+    let mesh = TriMesh { positions, triangles: source.triangles.clone() };
+    let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+    let mut is: Vec<bool> =
+        mesh.triangles.par_iter().map(|t| shape(t.map(|v| mesh.positions[v as usize])).1 > LEAST_HEIGHT * h).collect();
+    let mut meets = vec![false; is.len()];
+    intersecting_triangles(&mesh, progress)?.into_iter().for_each(|t| meets[t as usize] = true);
+    is.iter_mut().zip(&meets).for_each(|(is, meets)| *is &= !meets);
+    coincident(&mesh, &all).into_iter().for_each(|t| is[t as usize] = false);
+    let mut kept = Kept { reversed: vec![false; is.len()], is, mesh, meets };
+    let patches = Patches::new(&kept, evidence);
+    let mut torn = vec![false; kept.mesh.positions.len()];
+    for t in 0..kept.is.len() {
+        let tells_no = kept.is[t] && evidence.dropped(t) > 0 && !patches.verdict(t).bounds();
+        kept.mesh.triangles[t].iter().filter(|_| tells_no).for_each(|&v| torn[v as usize] = true);
+    }
+    for t in 0..kept.is.len() {
+        kept.is[t] &= patches.verdict(t).bounds() || kept.mesh.triangles[t].iter().all(|&v| !torn[v as usize]);
+    }
+    let patches = Patches::new(&kept, evidence);
+    for t in 0..kept.is.len() {
+        let verdict = patches.verdict(t);
+        kept.is[t] &= verdict.bounds();
+        kept.reversed[t] = verdict.bounding[1] > verdict.bounding[0];
+    }
+    Ok(kept)
+}
+
+/// The crossings of a patch.
+#[derive(Debug, Clone, Copy, Default)]
+struct Verdict {
+    crossed: u32,
+    dropped: u32,
+    bounding: [u32; 2],
+}
+
+impl Verdict {
+    fn bounds(&self) -> bool {
+        let [more, less] = [self.bounding[0].max(self.bounding[1]), self.bounding[0].min(self.bounding[1])];
+        let share = |part: u32| f64::from(part) / f64::from(self.crossed.max(1));
+        more > 0 && share(self.dropped + less) <= MOST_DROPPED && share(more) >= LEAST_BOUNDING
+    }
+}
+
+/// Triangles joined over edges that two of the soup share, and what the rays say of them.
+struct Patches {
+    patch: Vec<u32>,
+    verdicts: Vec<Verdict>,
+}
+
+impl Patches {
+    fn new(kept: &Kept, evidence: &Evidence) -> Self {
+        let mut union = Union::new(kept.is.len());
+        let edges = Edges::new(&kept.mesh.triangles, kept.mesh.positions.len());
+        edges.each(|edge| {
+            let mut halves = edge.halves();
+            let (2, Some(a), Some(b)) = (edge.count(), halves.next(), halves.next()) else { return };
+            if edges.runs_up(a) != edges.runs_up(b) && kept.is[a as usize / 3] && kept.is[b as usize / 3] {
+                union.join(a / 3, b / 3);
+            }
+        });
+        let patch: Vec<u32> = (0..kept.is.len() as u32).map(|t| union.root(t)).collect();
+        let mut verdicts = vec![Verdict::default(); patch.len()];
+        for (t, &patch) in patch.iter().enumerate() {
+            let verdict = &mut verdicts[patch as usize];
+            verdict.crossed += evidence.crossed[t];
+            verdict.dropped += evidence.dropped(t);
+            (0..2).for_each(|k| verdict.bounding[k] += evidence.bounding[t][k]);
+        }
+        Self { patch, verdicts }
+    }
+
+    fn verdict(&self, triangle: usize) -> Verdict {
+        self.verdicts[self.patch[triangle] as usize]
+    }
+}
