@@ -1,12 +1,13 @@
 //! Which source triangles bound the solid by themselves.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::super::facets::Facets;
-use super::super::safeguard::coincident;
 use super::super::surface::{rounded, shape};
 use crate::ldi::Evidence;
-use crate::mesh::edges::{Edges, Union};
+use crate::mesh::edges::{Edges, Union, copies};
+use crate::mesh::weld::first_of_equal;
 use crate::mesh::{TriMesh, intersecting_triangles};
 use crate::progress::{Progress, Stopped};
 
@@ -78,17 +79,7 @@ impl Kept {
 /// patch has the solid on one side all over, unless it is open; so one word of all its rays will do, and where
 /// they differ, what is near those that say no is left out and the rest asked again.
 pub(super) fn chosen(facets: &Facets<'_>, evidence: &Evidence, h: f64, progress: &Progress) -> Result<Kept, Stopped> {
-    let source = facets.mesh();
-    let positions = source.positions.iter().map(|&p| rounded(p)).collect();
-    let mesh = TriMesh { positions, triangles: source.triangles.clone() };
-    let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
-    let mut is: Vec<bool> =
-        mesh.triangles.par_iter().map(|t| shape(t.map(|v| mesh.positions[v as usize])).1 > LEAST_HEIGHT * h).collect();
-    let mut meets = vec![false; is.len()];
-    intersecting_triangles(&mesh, progress)?.into_iter().for_each(|t| meets[t as usize] = true);
-    is.iter_mut().zip(&meets).for_each(|(is, meets)| *is &= !meets);
-    coincident(&mesh, &all).into_iter().for_each(|t| is[t as usize] = false);
-    let mut kept = Kept { reversed: vec![false; is.len()], is, mesh, meets };
+    let mut kept = candidates(facets.mesh(), h, progress)?;
     let patches = Patches::new(&kept, evidence);
     let mut torn = vec![false; kept.mesh.positions.len()];
     for t in 0..kept.is.len() {
@@ -105,6 +96,26 @@ pub(super) fn chosen(facets: &Facets<'_>, evidence: &Evidence, h: f64, progress:
         kept.reversed[t] = verdict.bounding[1] > verdict.bounding[0];
     }
     Ok(kept)
+}
+
+/// The triangles that have an area and meet no other. Of several copies of a triangle the first is one; vertices at the
+/// same place count as one.
+fn candidates(source: &TriMesh, h: f64, progress: &Progress) -> Result<Kept, Stopped> {
+    let positions: Vec<DVec3> = source.positions.iter().map(|&p| rounded(p)).collect();
+    let first = first_of_equal(&positions);
+    let mut triangles: Vec<[u32; 3]> = source.triangles.iter().map(|t| t.map(|v| first[v as usize])).collect();
+    for [copy, _] in copies(&triangles, positions.len()) {
+        // Without edges, it is no neighbour to anyone.
+        triangles[copy as usize] = [triangles[copy as usize][0]; 3];
+    }
+    let mut is: Vec<bool> =
+        triangles.par_iter().map(|t| shape(t.map(|v| positions[v as usize])).1 > LEAST_HEIGHT * h).collect();
+    let single: Vec<u32> = (0..is.len() as u32).filter(|&t| is[t as usize]).collect();
+    let mesh = TriMesh { triangles: single.iter().map(|&t| triangles[t as usize]).collect(), positions };
+    let mut meets = vec![false; is.len()];
+    intersecting_triangles(&mesh, progress)?.into_iter().for_each(|n| meets[single[n as usize] as usize] = true);
+    is.iter_mut().zip(&meets).for_each(|(is, meets)| *is &= !meets);
+    Ok(Kept { reversed: vec![false; is.len()], is, meets, mesh: TriMesh { triangles, ..mesh } })
 }
 
 /// The crossings of a patch.
