@@ -43,14 +43,33 @@ impl Pseudonormals {
     /// The signed distance of `p` (model units), of which `closest` is the nearest point on the mesh that these are
     /// the normals of: negative inside, where the normals point away.
     pub fn signed(&self, p: DVec3, closest: &Closest) -> f64 {
+        let inside = (p - closest.point).normalize_or_zero().dot(self.sum(closest)) < 0.0;
+        if inside { -closest.distance } else { closest.distance }
+    }
+
+    /// The unit pseudonormal at a point on the mesh; zero where the normals around it cancel.
+    pub fn at(&self, closest: &Closest) -> DVec3 {
+        self.sum(closest).normalize_or_zero()
+    }
+
+    fn sum(&self, closest: &Closest) -> DVec3 {
         let id = closest.id as usize;
         let normal = match closest.feature {
             Feature::Inside => self.faces.get(id).copied(),
             Feature::Edge(k) => self.edges.get(id).and_then(|edges| edges.get(usize::from(k)).copied()),
             Feature::Corner(k) => self.corners.get(id).and_then(|corners| corners.get(usize::from(k)).copied()),
         };
-        let inside = normal.is_some_and(|normal| (p - closest.point).normalize_or_zero().dot(normal) < 0.0);
-        if inside { -closest.distance } else { closest.distance }
+        normal.unwrap_or_default()
+    }
+
+    /// The sum over edge `k` (0, 1, 2) of a triangle, not of length 1.
+    pub(crate) fn of_edge(&self, triangle: usize, k: usize) -> DVec3 {
+        self.edges[triangle][k]
+    }
+
+    /// The sum at corner `k` of a triangle, not of length 1.
+    pub(crate) fn of_corner(&self, triangle: usize, k: usize) -> DVec3 {
+        self.corners[triangle][k]
     }
 }
 

@@ -1,0 +1,155 @@
+//! Faces, edges and vertices of a mesh, each with the half-spaces that hold its Voronoi region: the
+//! points that can have it as their nearest.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::lattice::Lattice;
+use crate::mesh::edges::Edges;
+use crate::mesh::weld::welded_triangles;
+use crate::mesh::{Pseudonormals, TriMesh};
+
+/// Half-spaces a vertex keeps, at most; leaving some out makes its region larger, which costs time only.
+pub(super) const MOST_SIDES: usize = 8;
+/// A triangle lower than this, in h, has no face of its own: its edges are as near.
+const LOWEST: f64 = 1e-5;
+/// An edge whose region is narrower than this, in h, at the end of the band lies within the margin of
+/// its faces' regions.
+const NARROWEST: f64 = 1e-5;
+
+/// The open side of a triangle. Lattice coordinates, as everything here.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Face {
+    pub corners: [DVec3; 3],
+    /// Unit normal.
+    pub normal: DVec3,
+    /// For the side from each corner to the next the unit vector in the plane that points inwards.
+    pub inner: [DVec3; 3],
+}
+
+/// An edge between two vertices.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Edge {
+    pub start: DVec3,
+    /// Unit vector to the other end.
+    pub along: DVec3,
+    pub length: f64,
+    /// Unit pseudonormal, or zero where the normals of the faces cancel.
+    pub normal: DVec3,
+    /// Unit vectors into two of its faces, square to the edge; zero where there is none.
+    pub sides: [DVec3; 2],
+}
+
+/// A vertex.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Vertex {
+    pub at: DVec3,
+    /// Unit pseudonormal, or zero.
+    pub normal: DVec3,
+    /// Unit vectors along its edges; zero where there are fewer.
+    pub sides: [DVec3; MOST_SIDES],
+}
+
+/// All that can be nearest to a point within the band.
+#[derive(Debug, Default)]
+pub(super) struct Features {
+    pub faces: Vec<Face>,
+    pub edges: Vec<Edge>,
+    pub vertices: Vec<Vertex>,
+}
+
+impl Features {
+    /// Of `mesh`, in the coordinates of `lattice`, as far as they matter within `reach` (h).
+    pub(super) fn of(mesh: &TriMesh, normals: &Pseudonormals, lattice: &Lattice, reach: f64) -> Self {
+        let triangles = welded_triangles(mesh);
+        let positions: Vec<DVec3> = mesh.positions.par_iter().map(|&p| lattice.to_lattice(p)).collect();
+        let faces: Vec<Option<Face>> =
+            triangles.par_iter().map(|t| face(t.map(|v| positions[v as usize]))).collect();
+        let (mut edges, mut ends) = (Vec::new(), Vec::new());
+        Edges::new(&triangles, positions.len()).each(|edge| {
+            let [start, end] = edge.ends.map(|v| positions[v as usize]);
+            let length = start.distance(end);
+            if length == 0.0 {
+                return;
+            }
+            let mut sides = edge.halves().filter_map(|half| Some(faces[half as usize / 3]?.inner[half as usize % 3]));
+            let sides = [sides.next(), sides.next()].map(Option::unwrap_or_default);
+            let flat = edge.count() == 2 && sides[0] != DVec3::ZERO && (sides[0] + sides[1]).length() * reach < NARROWEST;
+            let along = (end - start) / length;
+            ends.push((edge.ends, along, flat));
+            if !flat {
+                let half = edge.halves().next().unwrap_or_default();
+                let normal = normals.of_edge(half as usize / 3, half as usize % 3).normalize_or_zero();
+                edges.push(Edge { start, along, length, normal, sides });
+            }
+        });
+        let vertices = vertices(&triangles, &positions, normals, &ends);
+        Self { faces: faces.into_iter().flatten().collect(), edges, vertices }
+    }
+}
+
+fn face(corners: [DVec3; 3]) -> Option<Face> {
+    let [a, b, c] = corners;
+    let sides = [b - a, c - b, a - c];
+    let longest = sides.iter().map(|side| side.length()).fold(0.0, f64::max);
+    let double = (b - a).cross(c - a);
+    let normal = double.try_normalize().filter(|_| double.length() > LOWEST * longest)?;
+    let mut inner = [DVec3::ZERO; 3];
+    for (inner, side) in inner.iter_mut().zip(sides) {
+        *inner = normal.cross(side).try_normalize()?;
+    }
+    Some(Face { corners, normal, inner })
+}
+
+type End = ([u32; 2], DVec3, bool);
+
+fn vertices(triangles: &[[u32; 3]], positions: &[DVec3], normals: &Pseudonormals, ends: &[End]) -> Vec<Vertex> {
+    let count = positions.len();
+    let mut corner_of = vec![u32::MAX; count];
+    for (corner, &v) in triangles.iter().flatten().enumerate() {
+        corner_of[v as usize] = corner_of[v as usize].min(corner as u32);
+    }
+    // The edges at each vertex, by counting.
+    let mut starts = vec![0u32; count + 1];
+    ends.iter().flat_map(|(ends, ..)| ends).for_each(|&v| starts[v as usize + 1] += 1);
+    (0..count).for_each(|v| starts[v + 1] += starts[v]);
+    let mut fill = starts.clone();
+    let mut around = vec![0u32; 2 * ends.len()];
+    for (n, (ends, ..)) in ends.iter().enumerate() {
+        for &v in ends {
+            around[fill[v as usize] as usize] = n as u32;
+            fill[v as usize] += 1;
+        }
+    }
+    let vertex = |v: usize| {
+        let edges = &around[starts[v] as usize..starts[v + 1] as usize];
+        // Amid a flat part there is nothing that its faces do not cover.
+        if corner_of[v] == u32::MAX || edges.iter().all(|&n| ends[n as usize].2) && !edges.is_empty() {
+            return None;
+        }
+        let direction = |&n: &u32| {
+            let ([low, _], along, _) = ends[n as usize];
+            if low as usize == v { along } else { -along }
+        };
+        let corner = corner_of[v] as usize;
+        let normal = normals.of_corner(corner / 3, corner % 3).normalize_or_zero();
+        Some(Vertex { at: positions[v], normal, sides: spread(edges.iter().map(direction)) })
+    };
+    (0..count).into_par_iter().filter_map(vertex).collect()
+}
+
+/// All directions, or of many those that are farthest apart.
+fn spread(directions: impl ExactSizeIterator<Item = DVec3> + Clone) -> [DVec3; MOST_SIDES] {
+    let mut chosen = [DVec3::ZERO; MOST_SIDES];
+    if directions.len() <= MOST_SIDES {
+        chosen.iter_mut().zip(directions).for_each(|(chosen, direction)| *chosen = direction);
+        return chosen;
+    }
+    let mut nearest: Vec<(f64, DVec3)> = directions.map(|direction| (-2.0, direction)).collect();
+    for chosen in &mut chosen {
+        let Some(&(_, next)) = nearest.iter().min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+        *chosen = next;
+        nearest.iter_mut().for_each(|(cosine, direction)| *cosine = cosine.max(direction.dot(next)));
+    }
+    chosen
+}

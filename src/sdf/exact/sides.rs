@@ -1,0 +1,216 @@
+//! On which side voxels lie: where single precision could not tell, beyond the band, and in bricks that are not stored.
+
+use std::sync::Arc;
+
+use glam::IVec3;
+use rayon::prelude::*;
+
+use super::{ExactDistance, ExactError, PointSign, Raw, Sign};
+use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot};
+use crate::ldi::Expression;
+use crate::mesh::{Bounds, TriMesh};
+use crate::progress::{Progress, Stopped};
+use crate::vote::{Votes, Winding, voxel_in_brick};
+
+/// The search for the nearest triangle of a doubtful voxel reaches farther than its distance by this, in h.
+const SURE: f64 = 1e-3;
+
+type Values = [f32; BRICK_VOXELS];
+
+/// Gives every voxel its side.
+pub(super) fn settle(
+    raw: &mut Raw,
+    mesh: &TriMesh,
+    lattice: &Lattice,
+    sign: Sign<'_>,
+    progress: &Progress,
+) -> Result<(), ExactError> {
+    match sign {
+        Sign::Pseudonormal => {
+            let bounds = mesh.bounds().ok_or(ExactError::Empty)?;
+            let sides = Sides { mesh, bounds, lattice, point: std::cell::OnceCell::new() };
+            ask_again(raw, &sides, progress)?;
+            let band = raw.band;
+            raw.grid.values.par_iter_mut().for_each(|values| spread(values, band));
+            sides.classes(raw);
+        }
+        Sign::Votes(votes) => {
+            let band = raw.band;
+            let bricks = raw.grid.bricks.clone();
+            raw.grid.values.par_iter_mut().zip(bricks.active()).for_each(|(values, &brick)| by_votes(values, votes, brick, band));
+            let class = |brick: IVec3| Ok(votes.get(brick * BRICK).is_inside);
+            give_classes(raw, class)?;
+        }
+        Sign::Winding(winding, expression) => {
+            let band = raw.band;
+            let bricks = raw.grid.bricks.clone();
+            let all = raw.grid.values.par_iter_mut().zip(bricks.active());
+            all.try_for_each(|(values, &brick)| {
+                progress.check()?;
+                by_winding(values, winding, expression, brick, band)
+            })?;
+            let centre = IVec3::splat(BRICK / 2);
+            give_classes(raw, |brick| {
+                let mut result = false;
+                winding.decide(brick * BRICK + centre, &[IVec3::ZERO], expression, |_, inside| result = inside)?;
+                Ok(result)
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// The point query, made when it is first needed.
+struct Sides<'a> {
+    mesh: &'a TriMesh,
+    bounds: Bounds,
+    lattice: &'a Lattice,
+    point: std::cell::OnceCell<ExactDistance>,
+}
+
+impl Sides<'_> {
+    fn point(&self) -> &ExactDistance {
+        self.point.get_or_init(|| ExactDistance::of(self.mesh, PointSign::Pseudonormal))
+    }
+
+    /// Gives inactive bricks their class. Behind an active brick it is that of its last voxels, which the surface does
+    /// not come near; where none comes before, of the first active one's first voxels; in rows without any, one is asked.
+    fn classes(&self, raw: &mut Raw) {
+        let grid = &raw.grid;
+        let last = |n: usize| grid.values[n][7] < 0.0;
+        let number = |brick: IVec3| match grid.bricks.slot(brick) {
+            Slot::Active(n) => Some(n as usize),
+            _ => None,
+        };
+        let active = grid.bricks.active().to_vec();
+        let mut bricks = Bricks::with_classes(active.iter().copied(), |brick| number(brick).is_some_and(last));
+        let counts = raw.end / BRICK;
+        let mut next = active.iter().enumerate().peekable();
+        for row in 0..counts.y * counts.z {
+            let (y, z) = (row % counts.y, row / counts.y);
+            let of_row = |b: &IVec3| b.y == y && b.z == z;
+            let first = next.peek().filter(|(_, b)| of_row(b)).map(|&(n, b)| (n, b.x));
+            let (inside, until) = match first {
+                Some((_, 0)) => (false, 0),
+                Some((n, x)) => (grid.values[n][0] < 0.0, x),
+                None => (self.is_inside(IVec3::new(0, y, z) * BRICK), counts.x),
+            };
+            if inside {
+                (0..until).for_each(|x| bricks.set_inside(IVec3::new(x, y, z)));
+            }
+            while next.next_if(|(_, b)| of_row(b)).is_some() {}
+        }
+        raw.grid.bricks = Arc::new(bricks);
+    }
+
+    fn is_inside(&self, voxel: IVec3) -> bool {
+        let p = self.lattice.to_model(voxel.as_dvec3());
+        // Outside of the box around a closed mesh nothing is inside.
+        let within = p.cmpge(self.bounds.min).all() && p.cmple(self.bounds.max).all();
+        within && self.point().at(p).is_some_and(|nearest| nearest.signed < 0.0)
+    }
+}
+
+/// Asks double precision about the doubtful voxels.
+fn ask_again(raw: &mut Raw, sides: &Sides<'_>, progress: &Progress) -> Result<(), Stopped> {
+    if raw.doubtful.iter().all(Vec::is_empty) {
+        return Ok(());
+    }
+    let (point, lattice) = (sides.point(), sides.lattice);
+    let bricks = raw.grid.bricks.clone();
+    let all = raw.grid.values.par_iter_mut().zip(bricks.active()).zip(&raw.doubtful);
+    all.try_for_each(|((values, &brick), doubtful)| {
+        progress.check()?;
+        for &n in doubtful {
+            let value = &mut values[n as usize];
+            let voxel = brick * BRICK + voxel_in_brick(n.into());
+            let limit = (f64::from(value.abs()) + SURE) * lattice.h;
+            if let Some(nearest) = point.within(lattice.to_model(voxel.as_dvec3()), limit) {
+                *value = (nearest.signed / lattice.h) as f32;
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Lets the voxels beyond the band take the side of those next to them. Between two neighbours of which one is more
+/// than 1 h from the surface there is no surface.
+fn spread(values: &mut Values, band: f32) {
+    let mut rest: Vec<u16> = (0..BRICK_VOXELS as u16).filter(|&n| values[n as usize].is_infinite()).collect();
+    while !rest.is_empty() {
+        let before = rest.len();
+        rest.retain(|&n| {
+            let known = neighbours(n).map(|m| values[m as usize]).find(|value| value.is_finite());
+            if let Some(value) = known {
+                values[n as usize] = band.copysign(value);
+            }
+            known.is_none()
+        });
+        if rest.len() == before {
+            break;
+        }
+    }
+}
+
+/// The up to six neighbours of a voxel within its brick.
+fn neighbours(n: u16) -> impl Iterator<Item = u16> {
+    (0..3).flat_map(move |axis| {
+        let (step, at) = (1 << (3 * axis), n >> (3 * axis) & 7);
+        [(at > 0).then(|| n - step), (at < 7).then_some(n + step)].into_iter().flatten()
+    })
+}
+
+fn by_votes(values: &mut Values, votes: &Grid<Votes>, brick: IVec3, band: f32) {
+    let set = |value: &mut f32, inside: bool| {
+        let distance = value.abs().min(band);
+        *value = if inside { -distance } else { distance };
+    };
+    match votes.bricks.slot(brick) {
+        Slot::Active(n) => {
+            let votes = &votes.values[n as usize];
+            values.iter_mut().zip(votes).for_each(|(value, votes)| set(value, votes.is_inside));
+        }
+        class => values.iter_mut().for_each(|value| set(value, class == Slot::Inside)),
+    }
+}
+
+fn by_winding(
+    values: &mut Values,
+    winding: &Winding<'_>,
+    expression: &Expression,
+    brick: IVec3,
+    band: f32,
+) -> Result<(), Stopped> {
+    let wanted: Vec<IVec3> = (0..64).map(|n| IVec3::new(n & 3, n >> 2 & 3, n >> 4)).collect();
+    for block in 0..8 {
+        let first = IVec3::new(block & 1, block >> 1 & 1, block >> 2) * 4;
+        winding.decide(brick * BRICK + first, &wanted, expression, |k, inside| {
+            let value = &mut values[crate::lattice::index_in_brick(first + k)];
+            let distance = value.abs().min(band);
+            *value = if inside { -distance } else { distance };
+        })?;
+    }
+    Ok(())
+}
+
+/// Gives every inactive brick of the lattice the class that `class` has for it.
+fn give_classes(raw: &mut Raw, class: impl Fn(IVec3) -> Result<bool, Stopped> + Sync) -> Result<(), Stopped> {
+    let counts = raw.end / BRICK;
+    let old = raw.grid.bricks.clone();
+    let all = (0..counts.x * counts.y * counts.z).into_par_iter();
+    let brick = |n: i32| IVec3::new(n % counts.x, n / counts.x % counts.y, n / (counts.x * counts.y));
+    let inside: Vec<IVec3> = all
+        .map(|n| {
+            let brick = brick(n);
+            let stored = matches!(old.slot(brick), Slot::Active(_));
+            Ok((!stored && class(brick)?).then_some(brick))
+        })
+        .collect::<Result<Vec<_>, Stopped>>()?
+        .into_iter()
+        .flatten()
+        .collect();
+    let mut bricks = Bricks::new(old.active().iter().copied());
+    inside.into_iter().for_each(|brick| bricks.set_inside(brick));
+    raw.grid.bricks = Arc::new(bricks);
+    Ok(())
+}
