@@ -1,7 +1,7 @@
 //! From a tile of 32³ voxels down to single voxels: lists of the features that can be nearest, which shrink from
 //! block to block.
 
-use glam::{DVec3, IVec3, Vec3};
+use glam::{DVec3, IVec3, Vec3, Vec4};
 
 use super::feature::Features;
 use super::quads::{Eight, Local, LocalEdge, LocalFace, LocalVertex, Sides};
@@ -14,7 +14,7 @@ const LEVELS: usize = 5;
 /// With so few features in a brick's, or in a 4³ block's list, measuring them everywhere is faster than
 /// finding out where they count.
 const FEW_IN_BRICK: usize = 5;
-const FEW_IN_BLOCK: usize = 12;
+const FEW_IN_BLOCK: usize = 14;
 /// Two surfaces of which opposite sides are seen, at distances closer together than this (in h, and as a
 /// share of the distance), are too close to tell the side by single precision.
 const DOUBT: f32 = 3e-5;
@@ -46,19 +46,62 @@ pub(super) struct Filled {
     pub doubtful: Vec<u16>,
 }
 
-/// A feature as eight blocks see it.
+/// A feature as eight blocks see it: which of them its region meets, and the squares of its distances.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     id: u32,
     mask: u32,
-    square: [f32; 8],
+    squares: [Vec4; 2],
 }
 
-/// The lists of one block, and what its children see of them.
+/// Numbers of features, of which the first `count` matter; the rest is room for more.
+#[derive(Debug, Default)]
+struct Ids {
+    ids: Vec<u32>,
+    count: usize,
+}
+
+/// The lists of one block, and room to find those of its children.
 #[derive(Default)]
 struct Level {
-    lists: Lists,
+    faces: Ids,
+    edges: Ids,
+    vertices: Ids,
     seen: [Vec<Seen>; 3],
+    /// Features, and bit by bit the children that they matter to.
+    shared: [Vec<(u32, u32)>; 3],
+}
+
+impl Level {
+    fn len(&self) -> usize {
+        self.faces.count + self.edges.count + self.vertices.count
+    }
+}
+
+impl Ids {
+    fn all(&mut self, count: usize) {
+        self.ids.clear();
+        self.ids.extend(0..count as u32);
+        self.count = count;
+    }
+
+    fn list(&self) -> &[u32] {
+        &self.ids[..self.count]
+    }
+
+    /// The features that matter to child `n`. Without a branch on that: it could not be foretold.
+    #[inline]
+    fn pick(&mut self, shared: &[(u32, u32)], n: usize) {
+        if self.ids.len() < shared.len() {
+            self.ids.resize(shared.len(), 0);
+        }
+        let mut count = 0;
+        for &(id, mask) in shared {
+            self.ids[count] = id;
+            count += (mask >> n & 1) as usize;
+        }
+        self.count = count;
+    }
 }
 
 /// Works through tiles, one after another; keeps its memory between them.
@@ -124,10 +167,10 @@ impl Worker {
         refill(&mut self.vertices, &lists.vertices, |id| LocalVertex::new(&features.vertices[id], centre));
         let tile =
             Tile { faces: &self.faces, edges: &self.edges, vertices: &self.vertices, band, base, end };
-        let all = &mut self.levels[0].lists;
-        refill_ids(&mut all.faces, lists.faces.len());
-        refill_ids(&mut all.edges, lists.edges.len());
-        refill_ids(&mut all.vertices, lists.vertices.len());
+        let top = &mut self.levels[0];
+        top.faces.all(lists.faces.len());
+        top.edges.all(lists.edges.len());
+        top.vertices.all(lists.vertices.len());
         tile.bricks(&mut self.levels, Block { base: IVec3::ZERO, size: TILE }, out);
     }
 }
@@ -135,11 +178,6 @@ impl Worker {
 fn refill<T>(list: &mut Vec<T>, ids: &[u32], make: impl Fn(usize) -> T) {
     list.clear();
     list.extend(ids.iter().map(|&id| make(id as usize)));
-}
-
-fn refill_ids(list: &mut Vec<u32>, count: usize) {
-    list.clear();
-    list.extend(0..count as u32);
 }
 
 impl Tile<'_> {
@@ -170,8 +208,8 @@ impl Tile<'_> {
             4 => FEW_IN_BLOCK,
             _ => FEW_IN_BRICK,
         };
-        if levels[0].lists.len() <= few {
-            self.measure_all(&levels[0].lists, block, voxels);
+        if levels[0].len() <= few {
+            self.measure_all(&levels[0], block, voxels);
         } else {
             self.children(levels, block, |tile, levels, child| tile.voxels(levels, child, voxels));
         }
@@ -183,35 +221,37 @@ impl Tile<'_> {
         let size = block.size / 2;
         let (step, half) = (0.5 * size as f32, 0.5 * (size - 1) as f32);
         let eight = Eight::new(block.centre(), step);
-        let mut nearest = [f32::INFINITY; 8];
-        let Level { lists, seen } = this;
-        look(self.faces, &lists.faces, &eight, half, &mut seen[0], &mut nearest);
-        look(self.edges, &lists.edges, &eight, half, &mut seen[1], &mut nearest);
-        look(self.vertices, &lists.vertices, &eight, half, &mut seen[2], &mut nearest);
-        let radius = ROOT_3 * half;
-        for n in 0..8 {
-            // Whatever is nearest to a voxel of the child is no farther from its centre than this.
-            let most = (nearest[n].sqrt() + radius).min(self.band) + radius + SLACK;
-            let lists = &mut below[0].lists;
-            pick(&seen[0], n, most * most, &mut lists.faces);
-            pick(&seen[1], n, most * most, &mut lists.edges);
-            pick(&seen[2], n, most * most, &mut lists.vertices);
-            if lists.len() > 0 {
-                visit(self, below, block.child(n));
-            }
+        let mut nearest = [Vec4::INFINITY; 2];
+        let Level { faces, edges, vertices, seen, shared } = this;
+        look(self.faces, faces.list(), &eight, half, &mut seen[0], &mut nearest);
+        look(self.edges, edges.list(), &eight, half, &mut seen[1], &mut nearest);
+        look(self.vertices, vertices.list(), &eight, half, &mut seen[2], &mut nearest);
+        // Whatever is nearest to a voxel of a child is no farther from the child's centre than this.
+        let radius = Vec4::splat(ROOT_3 * half);
+        let most = nearest.map(|square| (square.sqrt() + radius).min(Vec4::splat(self.band)) + radius + SLACK);
+        let most = most.map(|most| most * most);
+        let mut any = 0;
+        for (seen, shared) in seen.iter().zip(&mut *shared) {
+            any |= share(seen, most, shared);
+        }
+        for n in (0..8).filter(|n| any >> n & 1 == 1) {
+            below[0].faces.pick(&shared[0], n);
+            below[0].edges.pick(&shared[1], n);
+            below[0].vertices.pick(&shared[2], n);
+            visit(self, below, block.child(n));
         }
     }
 
     /// Measures all features of the lists at all voxels of `block`.
-    fn measure_all(&self, lists: &Lists, block: Block, voxels: &mut Voxels) {
+    fn measure_all(&self, lists: &Level, block: Block, voxels: &mut Voxels) {
         let pairs = block.size / 2;
         for n in 0..pairs * pairs * pairs {
             let base = block.base + 2 * IVec3::new(n % pairs, n / pairs % pairs, n / (pairs * pairs));
             let eight = Eight::new(Block { base, size: 2 }.centre(), 0.5);
             let mut best = Sides::NONE;
-            lists.faces.iter().for_each(|&id| self.faces[id as usize].measure(&eight, DOUBT, &mut best));
-            lists.edges.iter().for_each(|&id| self.edges[id as usize].measure(&eight, DOUBT, &mut best));
-            lists.vertices.iter().for_each(|&id| self.vertices[id as usize].measure(&eight, DOUBT, &mut best));
+            lists.faces.list().iter().for_each(|&id| self.faces[id as usize].measure(&eight, DOUBT, &mut best));
+            lists.edges.list().iter().for_each(|&id| self.edges[id as usize].measure(&eight, DOUBT, &mut best));
+            lists.vertices.list().iter().for_each(|&id| self.vertices[id as usize].measure(&eight, DOUBT, &mut best));
             voxels.store(base & (BRICK - 1), &best, self.band);
         }
     }
@@ -242,32 +282,32 @@ impl Voxels {
     }
 }
 
-/// Notes which of the features `ids` the eight blocks see, and the distance of the nearest to each centre.
-fn look<L: Local>(all: &[L], ids: &[u32], eight: &Eight, half: f32, seen: &mut Vec<Seen>, nearest: &mut [f32; 8]) {
+/// Notes which of the features `ids` the eight blocks see, and the square of the distance of the nearest from each
+/// centre.
+fn look<L: Local>(all: &[L], ids: &[u32], eight: &Eight, half: f32, seen: &mut Vec<Seen>, nearest: &mut [Vec4; 2]) {
     seen.clear();
-    let mut best = [glam::Vec4::INFINITY; 2];
     for &id in ids {
         let look = all[id as usize].look(eight, half);
         let mask = look.meets[0].bitmask() | look.meets[1].bitmask() << 4;
-        if mask == 0 {
-            continue;
-        }
         for k in 0..2 {
-            best[k] = best[k].min(glam::Vec4::select(look.true_at[k], look.square[k], glam::Vec4::INFINITY));
+            nearest[k] = nearest[k].min(Vec4::select(look.true_at[k], look.square[k], Vec4::INFINITY));
         }
-        let mut square = [0.0; 8];
-        square[..4].copy_from_slice(&look.square[0].to_array());
-        square[4..].copy_from_slice(&look.square[1].to_array());
-        seen.push(Seen { id, mask, square });
-    }
-    for (n, nearest) in nearest.iter_mut().enumerate() {
-        *nearest = nearest.min(best[n / 4][n % 4]);
+        seen.push(Seen { id, mask, squares: look.square });
     }
 }
 
-/// The features that block `n` of eight sees at a square distance of at most `most`.
-#[inline]
-fn pick(seen: &[Seen], n: usize, most: f32, ids: &mut Vec<u32>) {
-    ids.clear();
-    ids.extend(seen.iter().filter(|seen| seen.mask >> n & 1 == 1 && seen.square[n] <= most).map(|seen| seen.id));
+/// Notes to which blocks each feature matters: those that see it at a square distance of at most `most`. Returns the
+/// blocks to which any does.
+fn share(seen: &[Seen], most: [Vec4; 2], shared: &mut Vec<(u32, u32)>) -> u32 {
+    shared.clear();
+    let mut any = 0;
+    for seen in seen {
+        let near = |k: usize| seen.squares[k].cmple(most[k]).bitmask();
+        let mask = seen.mask & (near(0) | near(1) << 4);
+        any |= mask;
+        if mask != 0 {
+            shared.push((seen.id, mask));
+        }
+    }
+    any
 }

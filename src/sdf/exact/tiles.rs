@@ -9,6 +9,8 @@ use crate::progress::{Progress, Stopped};
 
 /// Regions are larger by this, in h.
 const MARGIN: f64 = 1e-3;
+/// Where faces bend less than by this sine, rounding may turn the direction in which they do.
+const SLIGHT: f64 = 1e-6;
 /// Features that one task sorts into blocks.
 const CHUNK: usize = 1 << 12;
 /// The largest block, in voxels: more than any lattice.
@@ -57,8 +59,8 @@ struct Seen {
 trait Region: Sync {
     /// What it is to the block of half-width `half` around `centre`; `None` where its region lies outside.
     fn seen(&self, centre: DVec3, half: f64) -> Option<Seen>;
-    /// The box around itself.
-    fn bounds(&self) -> [DVec3; 2];
+    /// The box around the part of the region within `band`.
+    fn bounds(&self, band: f64) -> [DVec3; 2];
 }
 
 /// Whether the block around `from` (seen from a point of the plane) reaches the inner side of a plane.
@@ -77,9 +79,10 @@ impl Region for Face {
         Some(Seen { least, distance: if over { least } else { f64::INFINITY } })
     }
 
-    fn bounds(&self) -> [DVec3; 2] {
+    fn bounds(&self, band: f64) -> [DVec3; 2] {
         let [a, b, c] = self.corners;
-        [a.min(b).min(c), a.max(b).max(c)]
+        let up = band * self.normal.abs();
+        [a.min(b).min(c) - up, a.max(b).max(c) + up]
     }
 }
 
@@ -96,9 +99,19 @@ impl Region for Edge {
         Some(Seen { least: (from - self.along * along).length(), distance: nearest.length() })
     }
 
-    fn bounds(&self) -> [DVec3; 2] {
+    fn bounds(&self, band: f64) -> [DVec3; 2] {
         let end = self.start + self.along * self.length;
-        [self.start.min(end), self.start.max(end)]
+        let (low, high) = (self.start.min(end), self.start.max(end));
+        let bend = -(self.sides[0] + self.sides[1]);
+        let sine = 0.5 * bend.length();
+        if self.sides.contains(&DVec3::ZERO) || sine < SLIGHT {
+            return [low - band, high + band];
+        }
+        // Directions of the wedge: as far from its axis, turned about the edge, as the faces bend.
+        let axis = bend / (2.0 * sine);
+        let aside = sine * self.along.cross(axis).abs();
+        let least = axis * (1.0 - sine * sine).max(0.0).sqrt();
+        [low + band * (axis.min(least).min(DVec3::ZERO) - aside), high + band * (axis.max(least).max(DVec3::ZERO) + aside)]
     }
 }
 
@@ -109,8 +122,8 @@ impl Region for Vertex {
         Some(Seen { least: distance, distance })
     }
 
-    fn bounds(&self) -> [DVec3; 2] {
-        [self.at; 2]
+    fn bounds(&self, band: f64) -> [DVec3; 2] {
+        [self.at - band, self.at + band]
     }
 }
 
@@ -118,7 +131,7 @@ impl Region for Vertex {
 pub(super) fn bricks(features: &Features, scope: &Scope, progress: &Progress) -> Result<Vec<Filled>, Stopped> {
     let longest = scope.end.max_element();
     let mut size = TILE;
-    while size < longest && f64::from(size) < 1.3 * scope.band && size < LARGEST {
+    while size < longest && f64::from(size) < scope.band && size < LARGEST {
         size *= 2;
     }
     let grid = Blocks { size, counts: (scope.end + size - 1) / size };
@@ -233,10 +246,10 @@ impl Blocks {
 
     fn blocks_of<R: Region>(&self, region: &R, band: f64, mut visit: impl FnMut(u32)) {
         let size = f64::from(self.size);
-        let [low, high] = region.bounds();
+        let [low, high] = region.bounds(band);
         // A block holds voxels from its base to its base + size - 1.
-        let first = ((low - band - MARGIN - size + 1.0) / size).ceil().max(DVec3::ZERO).as_ivec3();
-        let last = ((high + band + MARGIN) / size).floor().min((self.counts - 1).as_dvec3()).as_ivec3();
+        let first = ((low - MARGIN - size + 1.0) / size).ceil().max(DVec3::ZERO).as_ivec3();
+        let last = ((high + MARGIN) / size).floor().min((self.counts - 1).as_dvec3()).as_ivec3();
         for z in first.z..=last.z {
             for y in first.y..=last.y {
                 for x in first.x..=last.x {
