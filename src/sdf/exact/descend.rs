@@ -5,7 +5,7 @@ use glam::{DVec3, IVec3, Vec3, Vec4};
 
 use super::feature::Features;
 use super::quads::{Eight, Local, LocalEdge, LocalFace, LocalVertex, Sides};
-use crate::lattice::{BRICK, BRICK_VOXELS};
+use crate::lattice::{BRICK, BRICK_VOXELS, index_in_brick};
 
 /// Voxels along one side of a tile.
 pub(super) const TILE: i32 = 32;
@@ -42,8 +42,6 @@ pub(super) struct Filled {
     pub brick: IVec3,
     /// Signed distances in h; infinite beyond the band.
     pub values: Box<[f32; BRICK_VOXELS]>,
-    /// Voxels whose side single precision cannot tell.
-    pub doubtful: Vec<u16>,
 }
 
 /// A feature as eight blocks see it: which of them its region meets, and the squares of its distances.
@@ -118,6 +116,9 @@ struct Tile<'a> {
     faces: &'a [LocalFace],
     edges: &'a [LocalEdge],
     vertices: &'a [LocalVertex],
+    /// The same in double precision, and the numbers they have there.
+    features: &'a Features,
+    ids: &'a Lists,
     band: f32,
     /// First voxel, and the voxels after the last.
     base: IVec3,
@@ -138,14 +139,13 @@ impl Block {
 
     fn child(self, n: usize) -> Self {
         let size = self.size / 2;
-        Self { base: self.base + IVec3::new(n as i32 & 1, n as i32 >> 1 & 1, n as i32 >> 2) * size, size }
+        Self { base: self.base + voxel_in_pair(n as i32) * size, size }
     }
 }
 
 /// The voxels of a brick while they are found.
 struct Voxels {
     values: Box<[f32; BRICK_VOXELS]>,
-    doubtful: Vec<u16>,
     any: bool,
 }
 
@@ -165,8 +165,8 @@ impl Worker {
         refill(&mut self.faces, &lists.faces, |id| LocalFace::new(&features.faces[id], centre));
         refill(&mut self.edges, &lists.edges, |id| LocalEdge::new(&features.edges[id], centre));
         refill(&mut self.vertices, &lists.vertices, |id| LocalVertex::new(&features.vertices[id], centre));
-        let tile =
-            Tile { faces: &self.faces, edges: &self.edges, vertices: &self.vertices, band, base, end };
+        let Self { faces, edges, vertices, .. } = self;
+        let tile = Tile { faces, edges, vertices, features, ids: lists, band, base, end };
         let top = &mut self.levels[0];
         top.faces.all(lists.faces.len());
         top.edges.all(lists.edges.len());
@@ -184,13 +184,10 @@ impl Tile<'_> {
     /// Goes down to the bricks of `block`, whose lists are in the first of `levels`.
     fn bricks(&self, levels: &mut [Level], block: Block, out: &mut Vec<Filled>) {
         if block.size == BRICK {
-            let mut voxels =
-                Voxels { values: Box::new([f32::INFINITY; BRICK_VOXELS]), doubtful: Vec::new(), any: false };
+            let mut voxels = Voxels { values: Box::new([f32::INFINITY; BRICK_VOXELS]), any: false };
             self.voxels(levels, block, &mut voxels);
             if voxels.any {
-                let brick = (self.base + block.base) / BRICK;
-                voxels.doubtful.sort_unstable();
-                out.push(Filled { brick, values: voxels.values, doubtful: voxels.doubtful });
+                out.push(Filled { brick: (self.base + block.base) / BRICK, values: voxels.values });
             }
             return;
         }
@@ -252,34 +249,55 @@ impl Tile<'_> {
             lists.faces.list().iter().for_each(|&id| self.faces[id as usize].measure(&eight, DOUBT, &mut best));
             lists.edges.list().iter().for_each(|&id| self.edges[id as usize].measure(&eight, DOUBT, &mut best));
             lists.vertices.list().iter().for_each(|&id| self.vertices[id as usize].measure(&eight, DOUBT, &mut best));
-            voxels.store(base & (BRICK - 1), &best, self.band);
+            let mut doubtful = voxels.store(base & (BRICK - 1), &best, self.band);
+            while doubtful != 0 {
+                let offset = voxel_in_pair(doubtful.trailing_zeros() as i32);
+                self.decide(lists, base + offset, voxels);
+                doubtful &= doubtful - 1;
+            }
+        }
+    }
+
+    /// Measures a voxel again in double precision, which tells its side.
+    fn decide(&self, lists: &Level, voxel: IVec3, voxels: &mut Voxels) {
+        let p = (self.base + voxel).as_dvec3();
+        let faces = lists.faces.list().iter().map(|&id| self.ids.faces[id as usize]);
+        let edges = lists.edges.list().iter().map(|&id| self.ids.edges[id as usize]);
+        let vertices = lists.vertices.list().iter().map(|&id| self.ids.vertices[id as usize]);
+        if let Some(signed) = self.features.signed(p, faces, edges, vertices) {
+            voxels.values[index_in_brick(voxel)] = signed as f32;
         }
     }
 }
 
 impl Voxels {
-    /// Takes the eight voxels from `base`, counted from the brick's first, on.
+    /// Takes the eight voxels from `base`, counted from the brick's first, on. Returns those, bit by bit, whose side
+    /// single precision cannot tell.
     #[inline]
-    fn store(&mut self, base: IVec3, best: &Sides, band: f32) {
+    fn store(&mut self, base: IVec3, best: &Sides, band: f32) -> u32 {
+        let mut doubtful = 0;
         for half in 0..2 {
             let (outer, inner) = (best.outer[half], best.inner[half]);
-            let distances = outer.min(inner).sqrt().to_array();
-            let (outer, inner) = (outer.to_array(), inner.to_array());
-            let first = (base.x | base.y << 3 | (base.z + half as i32) << 6) as usize;
+            let distance = outer.min(inner).sqrt();
+            let doubt = distance * DOUBT_SHARE + DOUBT;
+            let close = (inner - outer).abs().cmple(doubt * (distance * 2.0 + doubt));
+            let within = distance.cmple(Vec4::splat(band)).bitmask();
+            let signed = Vec4::select(inner.cmplt(outer), -distance, distance);
+            let signed = Vec4::select(distance.cmple(Vec4::splat(band)), signed, Vec4::INFINITY).to_array();
+            let first = index_in_brick(base + IVec3::new(0, 0, half as i32));
             for (n, offset) in [0, 1, 8, 9].into_iter().enumerate() {
-                let distance = distances[n];
-                if distance > band {
-                    continue;
-                }
-                self.any = true;
-                self.values[first + offset] = if inner[n] < outer[n] { -distance } else { distance };
-                let doubt = DOUBT + DOUBT_SHARE * distance;
-                if (inner[n] - outer[n]).abs() <= doubt * (2.0 * distance + doubt) {
-                    self.doubtful.push((first + offset) as u16);
-                }
+                self.values[first + offset] = signed[n];
             }
+            self.any |= within != 0;
+            doubtful |= (close.bitmask() & within) << (4 * half);
         }
+        doubtful
     }
+}
+
+/// Offset of one of the eight voxels of a block.
+fn voxel_in_pair(n: i32) -> IVec3 {
+    IVec3::new(n & 1, n >> 1 & 1, n >> 2)
 }
 
 /// Notes which of the features `ids` the eight blocks see, and the square of the distance of the nearest from each

@@ -50,6 +50,37 @@ pub(super) struct Vertex {
     pub sides: [DVec3; MOST_SIDES],
 }
 
+/// A point this far, in h, past the end of a face or an edge still counts as beside it.
+const ROUNDING: f64 = 1e-9;
+
+/// The square of a distance in h, and on which side of the surface the point is: negative inside.
+type Measured = (f64, f64);
+
+impl Face {
+    /// Where the foot of the perpendicular from `p` lies on the face.
+    fn measure(&self, p: DVec3) -> Option<Measured> {
+        let over = (0..3).all(|k| self.inner[k].dot(p - self.corners[k]) >= -ROUNDING);
+        let side = self.normal.dot(p - self.corners[0]);
+        over.then_some((side * side, side))
+    }
+}
+
+impl Edge {
+    fn measure(&self, p: DVec3) -> Option<Measured> {
+        let from = p - self.start;
+        let along = self.along.dot(from);
+        let between = along >= -ROUNDING && along <= self.length + ROUNDING;
+        between.then(|| ((from - self.along * along).length_squared(), self.normal.dot(from)))
+    }
+}
+
+impl Vertex {
+    fn measure(&self, p: DVec3) -> Option<Measured> {
+        let from = p - self.at;
+        Some((from.length_squared(), self.normal.dot(from)))
+    }
+}
+
 /// All that can be nearest to a point within the band.
 #[derive(Debug, Default)]
 pub(super) struct Features {
@@ -85,6 +116,21 @@ impl Features {
         });
         let vertices = vertices(&triangles, &positions, normals, &ends);
         Self { faces: faces.into_iter().flatten().collect(), edges, vertices }
+    }
+
+    /// The signed distance of `p` in h from the nearest of some features, given by their numbers.
+    pub(super) fn signed(
+        &self,
+        p: DVec3,
+        faces: impl Iterator<Item = u32>,
+        edges: impl Iterator<Item = u32>,
+        vertices: impl Iterator<Item = u32>,
+    ) -> Option<f64> {
+        let faces = faces.filter_map(|id| self.faces[id as usize].measure(p));
+        let edges = edges.filter_map(|id| self.edges[id as usize].measure(p));
+        let vertices = vertices.filter_map(|id| self.vertices[id as usize].measure(p));
+        let (square, side) = faces.chain(edges).chain(vertices).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(if side < 0.0 { -square.sqrt() } else { square.sqrt() })
     }
 }
 

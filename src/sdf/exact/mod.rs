@@ -17,11 +17,12 @@ mod tiles;
 use std::sync::Arc;
 
 use glam::{DVec3, IVec3};
+use rayon::prelude::*;
 
 pub use cost::cost;
 pub use point::{ExactDistance, Nearest, PointSign};
 
-use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, brick_of};
+use crate::lattice::{BRICK, Bricks, Grid, Lattice, brick_of};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, Pseudonormals, TriMesh};
 use crate::progress::{Progress, Stopped};
@@ -150,8 +151,6 @@ fn farthest(lattice: &Lattice, bounds: &Bounds, end: IVec3) -> f64 {
 /// A field whose sides are not settled yet.
 struct Raw {
     grid: Grid<f32>,
-    /// Doubtful voxels of each active brick.
-    doubtful: Vec<Vec<u16>>,
     band: f32,
     end: IVec3,
 }
@@ -159,12 +158,7 @@ struct Raw {
 fn assemble(mut filled: Vec<Filled>, scope: &Scope) -> Raw {
     filled.sort_unstable_by_key(|filled| (filled.brick.z, filled.brick.y, filled.brick.x));
     let bricks = Arc::new(Bricks::new(filled.iter().map(|filled| filled.brick)));
-    let mut values: Vec<[f32; BRICK_VOXELS]> = Vec::with_capacity(filled.len());
-    let mut doubtful = Vec::with_capacity(filled.len());
-    for filled in filled {
-        values.push(*filled.values);
-        doubtful.push(filled.doubtful);
-    }
+    let values = filled.into_par_iter().map(|filled| *filled.values).collect();
     let band = scope.band as f32;
-    Raw { grid: Grid { bricks, values, inside: -band, outside: band }, doubtful, band, end: scope.end }
+    Raw { grid: Grid { bricks, values, inside: -band, outside: band }, band, end: scope.end }
 }

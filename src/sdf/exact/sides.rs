@@ -1,4 +1,4 @@
-//! On which side voxels lie: where single precision could not tell, beyond the band, and in bricks that are not stored.
+//! On which side voxels lie: beyond the band, in bricks that are not stored, and by votes and winding numbers.
 
 use std::sync::Arc;
 
@@ -10,10 +10,7 @@ use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh};
 use crate::progress::{Progress, Stopped};
-use crate::vote::{Votes, Winding, voxel_in_brick};
-
-/// The search for the nearest triangle of a doubtful voxel reaches farther than its distance by this, in h.
-const SURE: f64 = 1e-3;
+use crate::vote::{Votes, Winding};
 
 type Values = [f32; BRICK_VOXELS];
 
@@ -29,7 +26,6 @@ pub(super) fn settle(
         Sign::Pseudonormal => {
             let bounds = mesh.bounds().ok_or(ExactError::Empty)?;
             let sides = Sides { mesh, bounds, lattice, point: std::cell::OnceCell::new() };
-            ask_again(raw, &sides, progress)?;
             let band = raw.band;
             raw.grid.values.par_iter_mut().for_each(|values| spread(values, band));
             sides.classes(raw);
@@ -109,28 +105,6 @@ impl Sides<'_> {
         let within = p.cmpge(self.bounds.min).all() && p.cmple(self.bounds.max).all();
         within && self.point().at(p).is_some_and(|nearest| nearest.signed < 0.0)
     }
-}
-
-/// Asks double precision about the doubtful voxels.
-fn ask_again(raw: &mut Raw, sides: &Sides<'_>, progress: &Progress) -> Result<(), Stopped> {
-    if raw.doubtful.iter().all(Vec::is_empty) {
-        return Ok(());
-    }
-    let (point, lattice) = (sides.point(), sides.lattice);
-    let bricks = raw.grid.bricks.clone();
-    let all = raw.grid.values.par_iter_mut().zip(bricks.active()).zip(&raw.doubtful);
-    all.try_for_each(|((values, &brick), doubtful)| {
-        progress.check()?;
-        for &n in doubtful {
-            let value = &mut values[n as usize];
-            let voxel = brick * BRICK + voxel_in_brick(n.into());
-            let limit = (f64::from(value.abs()) + SURE) * lattice.h;
-            if let Some(nearest) = point.within(lattice.to_model(voxel.as_dvec3()), limit) {
-                *value = (nearest.signed / lattice.h) as f32;
-            }
-        }
-        Ok(())
-    })
 }
 
 /// Lets the voxels beyond the band take the side of those next to them. Between two neighbours of which one is more
