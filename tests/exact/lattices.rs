@@ -78,7 +78,9 @@ fn bands_of_any_width_and_none() {
 fn a_lattice_that_cuts_the_body_or_misses_it() {
     let mesh = turned(common::shapes::torus(24, 12), 0.4);
     let low = DVec3::new(0.4, -0.3, -0.2);
-    for (low, band) in [(low, 3.0), (DVec3::new(0.95, -0.05, -0.1), 1.0), (DVec3::splat(2.0), 8.0), (DVec3::splat(9.0), 2.0)] {
+    for (low, band) in
+        [(low, 3.0), (DVec3::new(0.95, -0.05, -0.1), 1.0), (DVec3::splat(2.0), 8.0), (DVec3::splat(9.0), 2.0)]
+    {
         let small = Lattice { origin: low, h: 1.0 / 60.0, dims: IVec3::new(41, 33, 20) };
         check("torus", &mesh, &small, Band::Within(band));
     }
@@ -128,7 +130,10 @@ fn costs_are_foretold() {
             let around = lattice(&mesh, 1.0 / resolution, width as i32);
             let told = cost(&mesh, &around, Band::Within(width)).voxels as f64;
             let taken = 512.0 * field(&mesh, &around, Band::Within(width)).bricks.len() as f64;
-            assert!(told > 0.7 * taken && told < 3.0 * taken + 1e5, "{name}: {told} for {taken} at {resolution}, {width}");
+            assert!(
+                told > 0.7 * taken && told < 3.0 * taken + 1e5,
+                "{name}: {told} for {taken} at {resolution}, {width}"
+            );
         }
     }
 }

@@ -53,7 +53,8 @@ fn fine_corner(depth: u32) -> TriMesh {
             let cut = cut_edges.iter().any(|&(p, q)| (p, q) == (a, b) || (q, p) == (a, b));
             cut.then(|| (a + b) / 2.0)
         };
-        let pieces = triangles.iter().flat_map(|&[a, b, c]| split([a, b, c], [middle(a, b), middle(b, c), middle(c, a)]));
+        let pieces =
+            triangles.iter().flat_map(|&[a, b, c]| split([a, b, c], [middle(a, b), middle(b, c), middle(c, a)]));
         let corners: Vec<[DVec3; 3]> = pieces.collect();
         let count = corners.len() as u32;
         mesh = TriMesh {

@@ -94,8 +94,7 @@ impl Features {
     pub(super) fn of(mesh: &TriMesh, normals: &Pseudonormals, lattice: &Lattice, reach: f64) -> Self {
         let triangles = welded_triangles(mesh);
         let positions: Vec<DVec3> = mesh.positions.par_iter().map(|&p| lattice.to_lattice(p)).collect();
-        let faces: Vec<Option<Face>> =
-            triangles.par_iter().map(|t| face(t.map(|v| positions[v as usize]))).collect();
+        let faces: Vec<Option<Face>> = triangles.par_iter().map(|t| face(t.map(|v| positions[v as usize]))).collect();
         let (mut edges, mut ends) = (Vec::new(), Vec::new());
         Edges::new(&triangles, positions.len()).each(|edge| {
             let [start, end] = edge.ends.map(|v| positions[v as usize]);
@@ -105,7 +104,8 @@ impl Features {
             }
             let mut sides = edge.halves().filter_map(|half| Some(faces[half as usize / 3]?.inner[half as usize % 3]));
             let sides = [sides.next(), sides.next()].map(Option::unwrap_or_default);
-            let flat = edge.count() == 2 && sides[0] != DVec3::ZERO && (sides[0] + sides[1]).length() * reach < NARROWEST;
+            let flat =
+                edge.count() == 2 && sides[0] != DVec3::ZERO && (sides[0] + sides[1]).length() * reach < NARROWEST;
             let along = (end - start) / length;
             ends.push((edge.ends, along, flat));
             if !flat {

@@ -192,7 +192,8 @@ impl Local for LocalEdge {
         let across = self.across.map(|f| eight.linear(f));
         let along = eight.linear(self.along);
         for half in 0..2 {
-            let between = along[half].cmpge(Vec4::splat(-MARGIN)) & along[half].cmple(Vec4::splat(self.length + MARGIN));
+            let between =
+                along[half].cmpge(Vec4::splat(-MARGIN)) & along[half].cmple(Vec4::splat(self.length + MARGIN));
             let square = across[0][half] * across[0][half] + across[1][half] * across[1][half];
             best.offer(half, square, between, across[0][half], doubt + self.blind);
         }

@@ -33,7 +33,11 @@ pub(super) fn settle(
         Sign::Votes(votes) => {
             let band = raw.band;
             let bricks = raw.grid.bricks.clone();
-            raw.grid.values.par_iter_mut().zip(bricks.active()).for_each(|(values, &brick)| by_votes(values, votes, brick, band));
+            raw.grid
+                .values
+                .par_iter_mut()
+                .zip(bricks.active())
+                .for_each(|(values, &brick)| by_votes(values, votes, brick, band));
             let class = |brick: IVec3| Ok(votes.get(brick * BRICK).is_inside);
             give_classes(raw, class)?;
         }

@@ -111,7 +111,10 @@ impl Region for Edge {
         let axis = bend / (2.0 * sine);
         let aside = sine * self.along.cross(axis).abs();
         let least = axis * (1.0 - sine * sine).max(0.0).sqrt();
-        [low + band * (axis.min(least).min(DVec3::ZERO) - aside), high + band * (axis.max(least).max(DVec3::ZERO) + aside)]
+        [
+            low + band * (axis.min(least).min(DVec3::ZERO) - aside),
+            high + band * (axis.max(least).max(DVec3::ZERO) + aside),
+        ]
     }
 }
 
@@ -184,7 +187,8 @@ fn lists_of(block: &Block, lists: &Lists, features: &Features, scope: &Scope) ->
     let nearest = [&faces, &edges, &vertices].into_iter().flatten().map(|(_, seen)| seen.distance);
     let nearest = nearest.fold(f64::INFINITY, f64::min);
     let most = (nearest + radius).min(scope.band) + radius + MARGIN;
-    let keep = |all: Vec<(u32, Seen)>| all.into_iter().filter(|(_, seen)| seen.least <= most).map(|(id, _)| id).collect();
+    let keep =
+        |all: Vec<(u32, Seen)>| all.into_iter().filter(|(_, seen)| seen.least <= most).map(|(id, _)| id).collect();
     Lists { faces: keep(faces), edges: keep(edges), vertices: keep(vertices) }
 }
 
