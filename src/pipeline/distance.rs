@@ -170,7 +170,7 @@ fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOption
     let (mut memory, mut seconds) = (exact.memory as f64, exact.seconds);
     if (options.method, options.sign) != (DistanceMethod::Exact, DistanceSign::Pseudonormal) {
         let votes = Input::of(std::slice::from_ref(input)).votes(lattice);
-        memory = votes.memory as f64 + memory;
+        memory += votes.memory as f64;
         seconds += votes.seconds;
     }
     if options.method == DistanceMethod::Robust {

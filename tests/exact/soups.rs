@@ -1,7 +1,7 @@
 //! Soups: the distance is that to the triangles, the side comes from elsewhere.
 
 use glam::IVec3;
-use meshwright::lattice::{Grid, Lattice, Slot};
+use meshwright::lattice::{Grid, Lattice};
 use meshwright::ldi::{Expression, Operands};
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
@@ -45,10 +45,28 @@ fn votes_tell_the_side() {
         for (v, distance) in voxels(&mesh, &around) {
             let got = grid.get(v);
             assert!((f64::from(got.abs()) - distance.min(width)).abs() < 1e-4, "{got} for {distance} at {v}");
-            let stored = matches!(grid.bricks.slot(meshwright::lattice::brick_of(v)), Slot::Active(_));
-            if stored {
-                assert_eq!(got < 0.0, votes.get(v).is_inside, "{v}");
-            }
+            assert_eq!(got < 0.0, votes.get(v).is_inside, "{v}");
+        }
+    }
+}
+
+#[test]
+fn what_closes_a_wide_hole_passes_through_stored_bricks() {
+    let mut mesh = shapes::cuboid(glam::DVec3::ZERO, glam::DVec3::ONE);
+    mesh.triangles.drain(2..4);
+    let around = lattice(&mesh, 1.0 / 50.0, 3);
+    let operands = Operands::new([mesh.triangles.len()]);
+    let numbers = Winding::new(&mesh, &operands, &around, &Progress::none());
+    let votes = stages::votes_of(&mesh, &around, VoteRule::default());
+    let expression = Expression::Operand(0);
+    for sign in [Sign::Votes(&votes), Sign::Winding(&numbers, &expression)] {
+        let grid = field(&mesh, &around, sign, Band::Within(2.0));
+        for v in (0..around.dims.element_product()).step_by(5) {
+            let v =
+                IVec3::new(v % around.dims.x, v / around.dims.x % around.dims.y, v / (around.dims.x * around.dims.y));
+            let p = around.to_model(v.as_dvec3());
+            let inside = p.cmpgt(glam::DVec3::ZERO).all() && p.cmplt(glam::DVec3::ONE).all();
+            assert_eq!(grid.get(v) < 0.0, inside, "{v}");
         }
     }
 }
@@ -65,13 +83,11 @@ fn winding_numbers_tell_the_side() {
     for (v, distance) in voxels(&mesh, &around).into_iter().step_by(3) {
         let got = grid.get(v);
         let number = winding(&mesh, around.to_model(v.as_dvec3()));
-        if matches!(grid.bricks.slot(meshwright::lattice::brick_of(v)), Slot::Active(_)) {
-            assert!((f64::from(got.abs()) - distance.min(3.0)).abs() < 1e-4, "{got} for {distance} at {v}");
-            if (number - 0.5).abs() > 0.01 {
-                assert_eq!(got < 0.0, number > 0.5, "{v}: {number}");
-                asked += 1;
-                inside += usize::from(number > 0.5);
-            }
+        assert!((f64::from(got.abs()) - distance.min(3.0)).abs() < 1e-4, "{got} for {distance} at {v}");
+        if (number - 0.5).abs() > 0.01 {
+            assert_eq!(got < 0.0, number > 0.5, "{v}: {number}");
+            asked += 1;
+            inside += usize::from(number > 0.5);
         }
     }
     assert!(inside > 500 && asked > 3 * inside, "{inside} of {asked}");

@@ -28,5 +28,5 @@ pub(super) fn write(samples: &DistanceSamples<'_>, out: &mut dyn Write) -> io::R
     write!(out, "<AppendedData encoding=\"raw\">_")?;
     out.write_all(&(4 * (x * y * z) as u64).to_le_bytes())?;
     write_values(samples, out)?;
-    write!(out, "</AppendedData></VTKFile>\n")
+    writeln!(out, "</AppendedData></VTKFile>")
 }

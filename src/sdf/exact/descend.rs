@@ -307,8 +307,8 @@ fn look<L: Local>(all: &[L], ids: &[u32], eight: &Eight, half: f32, seen: &mut V
     for &id in ids {
         let look = all[id as usize].look(eight, half);
         let mask = look.meets[0].bitmask() | look.meets[1].bitmask() << 4;
-        for k in 0..2 {
-            nearest[k] = nearest[k].min(Vec4::select(look.true_at[k], look.square[k], Vec4::INFINITY));
+        for (k, nearest) in nearest.iter_mut().enumerate() {
+            *nearest = nearest.min(Vec4::select(look.true_at[k], look.square[k], Vec4::INFINITY));
         }
         seen.push(Seen { id, mask, squares: look.square });
     }

@@ -31,29 +31,34 @@ pub(super) fn settle(
             sides.classes(raw);
         }
         Sign::Votes(votes) => {
-            let band = raw.band;
-            let bricks = raw.grid.bricks.clone();
-            raw.grid
-                .values
-                .par_iter_mut()
-                .zip(bricks.active())
-                .for_each(|(values, &brick)| by_votes(values, votes, brick, band));
-            let class = |brick: IVec3| Ok(votes.get(brick * BRICK).is_inside);
-            give_classes(raw, class)?;
+            let (bricks, band) = (raw.grid.bricks.clone(), raw.band);
+            let all = raw.grid.values.par_iter_mut().zip(bricks.active());
+            all.for_each(|(values, &brick)| by_votes(values, votes, brick, band));
+            settle_rest(raw, |brick, values| match votes.bricks.slot(brick) {
+                Slot::Active(_) => {
+                    by_votes(values, votes, brick, band);
+                    Ok(())
+                }
+                class => {
+                    values.fill(if class == Slot::Inside { -band } else { band });
+                    Ok(())
+                }
+            })?;
         }
         Sign::Winding(winding, expression) => {
-            let band = raw.band;
-            let bricks = raw.grid.bricks.clone();
+            let (bricks, band) = (raw.grid.bricks.clone(), raw.band);
             let all = raw.grid.values.par_iter_mut().zip(bricks.active());
             all.try_for_each(|(values, &brick)| {
                 progress.check()?;
                 by_winding(values, winding, expression, brick, band)
             })?;
-            let centre = IVec3::splat(BRICK / 2);
-            give_classes(raw, |brick| {
-                let mut result = false;
-                winding.decide(brick * BRICK + centre, &[IVec3::ZERO], expression, |_, inside| result = inside)?;
-                Ok(result)
+            settle_rest(raw, |brick, values| {
+                progress.check()?;
+                match corners(winding, expression, brick)? {
+                    Some(inside) => values.fill(if inside { -band } else { band }),
+                    None => by_winding(values, winding, expression, brick, band)?,
+                }
+                Ok(())
             })?;
         }
     }
@@ -171,24 +176,50 @@ fn by_winding(
     Ok(())
 }
 
-/// Gives every inactive brick of the lattice the class that `class` has for it.
-fn give_classes(raw: &mut Raw, class: impl Fn(IVec3) -> Result<bool, Stopped> + Sync) -> Result<(), Stopped> {
+/// The side of a brick, if all its corners have the same.
+fn corners(winding: &Winding<'_>, expression: &Expression, brick: IVec3) -> Result<Option<bool>, Stopped> {
+    let mut inside = 0;
+    for n in 0..8 {
+        let corner = IVec3::new(n & 1, n >> 1 & 1, n >> 2) * (BRICK - 1);
+        // The voxel is the outermost of its block of 4³.
+        let block = corner.min(IVec3::splat(BRICK / 2));
+        winding.decide(brick * BRICK + block, &[corner - block], expression, |_, is| inside += u32::from(is))?;
+    }
+    Ok(match inside {
+        0 => Some(false),
+        8 => Some(true),
+        _ => None,
+    })
+}
+
+/// Lets `fill` set the sides in every brick of the lattice that is not stored. Where all voxels have the same it is the
+/// class of the brick; where what closes a hole passes through the brick, far from any triangle, the brick is stored.
+fn settle_rest(raw: &mut Raw, fill: impl Fn(IVec3, &mut Values) -> Result<(), Stopped> + Sync) -> Result<(), Stopped> {
     let counts = raw.end / BRICK;
-    let old = raw.grid.bricks.clone();
-    let all = (0..counts.x * counts.y * counts.z).into_par_iter();
-    let brick = |n: i32| IVec3::new(n % counts.x, n / counts.x % counts.y, n / (counts.x * counts.y));
-    let inside: Vec<IVec3> = all
-        .map(|n| {
-            let brick = brick(n);
-            let stored = matches!(old.slot(brick), Slot::Active(_));
-            Ok((!stored && class(brick)?).then_some(brick))
-        })
-        .collect::<Result<Vec<_>, Stopped>>()?
-        .into_iter()
-        .flatten()
-        .collect();
-    let mut bricks = Bricks::new(old.active().iter().copied());
-    inside.into_iter().for_each(|brick| bricks.set_inside(brick));
+    let (old, band) = (raw.grid.bricks.clone(), raw.band);
+    let settled = |n: i32| {
+        let brick = IVec3::new(n % counts.x, n / counts.x % counts.y, n / (counts.x * counts.y));
+        if matches!(old.slot(brick), Slot::Active(_)) {
+            return Ok(None);
+        }
+        let mut values = Box::new([band; BRICK_VOXELS]);
+        fill(brick, &mut values)?;
+        let inside = values.iter().filter(|value| **value < 0.0).count();
+        Ok((inside > 0).then_some((brick, (inside < BRICK_VOXELS).then_some(values))))
+    };
+    let rest = (0..counts.element_product()).into_par_iter().map(settled);
+    let rest: Vec<_> = rest.collect::<Result<Vec<_>, Stopped>>()?.into_iter().flatten().collect();
+    let (mixed, inside): (Vec<_>, Vec<_>) = rest.into_iter().partition(|(_, values)| values.is_some());
+    if !mixed.is_empty() {
+        let stored = std::mem::take(&mut raw.grid.values).into_iter();
+        let mut all: Vec<(IVec3, Values)> = old.active().iter().copied().zip(stored).collect();
+        all.extend(mixed.into_iter().filter_map(|(brick, values)| Some((brick, *values?))));
+        all.sort_unstable_by_key(|(brick, _)| (brick.z, brick.y, brick.x));
+        raw.grid.bricks = Arc::new(Bricks::new(all.iter().map(|(brick, _)| *brick)));
+        raw.grid.values = all.into_iter().map(|(_, values)| values).collect();
+    }
+    let mut bricks = Bricks::new(raw.grid.bricks.active().iter().copied());
+    inside.into_iter().for_each(|(brick, _)| bricks.set_inside(brick));
     raw.grid.bricks = Arc::new(bricks);
     Ok(())
 }
