@@ -3,7 +3,7 @@
 
     tools/distance_peers.py PROGRAM [--runs 3] [--only WORD] [--no-values]
 
-Needs numpy, libigl and, for OpenVDB, a C++ compiler with libopenvdb-dev; what is missing is left out of the table.
+Needs numpy, libigl and, for OpenVDB, g++ with libopenvdb-dev and libboost-dev; without these its columns are left out.
 Rows are those of Sigg et al. 2003, Tables 1 to 4. Both programs run on all cores, one after the other, and the
 seconds are those of the field alone: without reading, writing, and what both need once for a process.
 """
@@ -54,13 +54,11 @@ def build_openvdb(folder):
     compiler, program = shutil.which("g++"), folder / "distance_openvdb"
     if compiler is None:
         return None
-    command = [compiler, "-O2", "-std=c++17", ROOT / "tools" / "distance_openvdb.cpp", "-o", program,
-               "-lopenvdb", "-ltbb", "-lHalf" if Path("/usr/lib/libHalf.so").exists() else "-lImath"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode != 0:
-        command.pop()
-        done = subprocess.run(command, capture_output=True, text=True)
-    return program if done.returncode == 0 else None
+    source = ROOT / "tools" / "distance_openvdb.cpp"
+    command = [compiler, "-O2", "-std=c++17", source, "-o", program, "-lopenvdb", "-ltbb"]
+    # Where the half floats of OpenVDB live depends on its version.
+    built = any(subprocess.run(command + more, capture_output=True).returncode == 0 for more in (["-lImath"], ["-lHalf"], []))
+    return program if built else None
 
 
 def read_nrrd(path):

@@ -1,6 +1,7 @@
 //! Normals at faces, edges and vertices by which the side of a point is told (Bærentzen and Aanæs 2005).
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::edges::Edges;
 use super::nearest_point::Feature;
@@ -22,17 +23,21 @@ impl Pseudonormals {
     /// The normals of `mesh`.
     pub fn of(mesh: &TriMesh) -> Self {
         let triangles = welded_triangles(mesh);
-        let faces: Vec<DVec3> = (0..triangles.len()).map(|t| normal(mesh.corners(t))).collect();
+        Self::over(mesh, &triangles, &Edges::new(&triangles, mesh.positions.len()))
+    }
+
+    /// The same, given the welded triangles of `mesh` and their edges.
+    pub(crate) fn over(mesh: &TriMesh, triangles: &[[u32; 3]], all_edges: &Edges<'_>) -> Self {
+        let (faces, angles): (Vec<DVec3>, Vec<[f64; 3]>) =
+            (0..triangles.len()).into_par_iter().map(|t| (normal(mesh.corners(t)), angles(mesh.corners(t)))).unzip();
         let mut at_vertices = vec![DVec3::ZERO; mesh.positions.len()];
         for (t, vertices) in triangles.iter().enumerate() {
-            let corners = mesh.corners(t);
             for k in 0..3 {
-                let (u, v) = (corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
-                at_vertices[vertices[k] as usize] += faces[t] * angle(u, v);
+                at_vertices[vertices[k] as usize] += faces[t] * angles[t][k];
             }
         }
         let mut edges = vec![[DVec3::ZERO; 3]; triangles.len()];
-        Edges::new(&triangles, mesh.positions.len()).each(|edge| {
+        all_edges.each(|edge| {
             let sum = edge.halves().fold(DVec3::ZERO, |sum, half| sum + faces[half as usize / 3]);
             edge.halves().for_each(|half| edges[half as usize / 3][half as usize % 3] = sum);
         });
@@ -78,6 +83,10 @@ fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or_zero()
 }
 
-fn angle(u: DVec3, v: DVec3) -> f64 {
-    u.cross(v).length().atan2(u.dot(v))
+/// The angles at the three corners.
+fn angles(corners: [DVec3; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| {
+        let (u, v) = (corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
+        u.cross(v).length().atan2(u.dot(v))
+    })
 }

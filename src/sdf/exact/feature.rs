@@ -5,7 +5,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::lattice::Lattice;
-use crate::mesh::edges::Edges;
+use crate::mesh::edges::{self as mesh, Edges};
 use crate::mesh::weld::welded_triangles;
 use crate::mesh::{Pseudonormals, TriMesh};
 
@@ -91,29 +91,18 @@ pub(super) struct Features {
 
 impl Features {
     /// Of `mesh`, in the coordinates of `lattice`, as far as they matter within `reach` (h).
-    pub(super) fn of(mesh: &TriMesh, normals: &Pseudonormals, lattice: &Lattice, reach: f64) -> Self {
+    pub(super) fn of(mesh: &TriMesh, lattice: &Lattice, reach: f64) -> Self {
         let triangles = welded_triangles(mesh);
+        let all_edges = Edges::new(&triangles, mesh.positions.len());
+        let normals = &Pseudonormals::over(mesh, &triangles, &all_edges);
         let positions: Vec<DVec3> = mesh.positions.par_iter().map(|&p| lattice.to_lattice(p)).collect();
         let faces: Vec<Option<Face>> = triangles.par_iter().map(|t| face(t.map(|v| positions[v as usize]))).collect();
-        let (mut edges, mut ends) = (Vec::new(), Vec::new());
-        Edges::new(&triangles, positions.len()).each(|edge| {
-            let [start, end] = edge.ends.map(|v| positions[v as usize]);
-            let length = start.distance(end);
-            if length == 0.0 {
-                return;
-            }
-            let mut sides = edge.halves().filter_map(|half| Some(faces[half as usize / 3]?.inner[half as usize % 3]));
-            let sides = [sides.next(), sides.next()].map(Option::unwrap_or_default);
-            let flat =
-                edge.count() == 2 && sides[0] != DVec3::ZERO && (sides[0] + sides[1]).length() * reach < NARROWEST;
-            let along = (end - start) / length;
-            ends.push((edge.ends, along, flat));
-            if !flat {
-                let half = edge.halves().next().unwrap_or_default();
-                let normal = normals.of_edge(half as usize / 3, half as usize % 3).normalize_or_zero();
-                edges.push(Edge { start, along, length, normal, sides });
-            }
-        });
+        let mut raw = Vec::with_capacity(3 * triangles.len() / 2);
+        all_edges.each(|edge| raw.push(RawEdge::new(&edge, &faces)));
+        let (edges, ends): (Vec<Option<Edge>>, Vec<Option<End>>) =
+            raw.par_iter().map(|raw| raw.edge(&positions, &faces, normals, reach)).unzip();
+        let edges = edges.into_iter().flatten().collect();
+        let ends: Vec<End> = ends.into_iter().flatten().collect();
         let vertices = vertices(&triangles, &positions, normals, &ends);
         Self { faces: faces.into_iter().flatten().collect(), edges, vertices }
     }
@@ -147,7 +136,47 @@ fn face(corners: [DVec3; 3]) -> Option<Face> {
     Some(Face { corners, normal, inner })
 }
 
+/// An edge by numbers.
+struct RawEdge {
+    ends: [u32; 2],
+    /// One half-edge of it, and up to two on triangles that have a face.
+    half: u32,
+    sides: [Option<u32>; 2],
+    count: usize,
+}
+
+/// The ends of an edge, its direction from the first to the second, and whether it is flat.
 type End = ([u32; 2], DVec3, bool);
+
+impl RawEdge {
+    fn new(edge: &mesh::Edge<'_>, faces: &[Option<Face>]) -> Self {
+        let mut sides = edge.halves().filter(|&half| faces[half as usize / 3].is_some());
+        let sides = [sides.next(), sides.next()];
+        Self { ends: edge.ends, half: edge.halves().next().unwrap_or_default(), sides, count: edge.count() }
+    }
+
+    /// The feature, unless it is flat, and its ends, unless they are one.
+    fn edge(
+        &self,
+        positions: &[DVec3],
+        faces: &[Option<Face>],
+        normals: &Pseudonormals,
+        reach: f64,
+    ) -> (Option<Edge>, Option<End>) {
+        let [start, end] = self.ends.map(|v| positions[v as usize]);
+        let length = start.distance(end);
+        if length == 0.0 {
+            return (None, None);
+        }
+        let inner = |half: u32| faces[half as usize / 3].map(|face| face.inner[half as usize % 3]);
+        let sides = self.sides.map(|half| half.and_then(inner).unwrap_or_default());
+        let flat = self.count == 2 && sides[0] != DVec3::ZERO && (sides[0] + sides[1]).length() * reach < NARROWEST;
+        let along = (end - start) / length;
+        let normal = normals.of_edge(self.half as usize / 3, self.half as usize % 3).normalize_or_zero();
+        let edge = (!flat).then_some(Edge { start, along, length, normal, sides });
+        (edge, Some((self.ends, along, flat)))
+    }
+}
 
 fn vertices(triangles: &[[u32; 3]], positions: &[DVec3], normals: &Pseudonormals, ends: &[End]) -> Vec<Vertex> {
     let count = positions.len();

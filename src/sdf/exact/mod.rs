@@ -24,7 +24,7 @@ pub use point::{ExactDistance, Nearest, PointSign};
 
 use crate::lattice::{BRICK, Bricks, Grid, Lattice, brick_of};
 use crate::ldi::Expression;
-use crate::mesh::{Bounds, Pseudonormals, TriMesh};
+use crate::mesh::{Bounds, TriMesh};
 use crate::progress::{Progress, Stopped};
 use crate::vote::{Votes, Winding};
 use descend::Filled;
@@ -118,9 +118,7 @@ pub fn exact(
     if let Some(allowed) = options.max_memory.filter(|&allowed| needed > allowed) {
         return Err(ExactError::Memory { needed, allowed });
     }
-    let normals = Pseudonormals::of(mesh);
-    let features = Features::of(mesh, &normals, lattice, scope.band);
-    drop(normals);
+    let features = Features::of(mesh, lattice, scope.band);
     progress.check()?;
     let filled = tiles::bricks(&features, &scope, progress)?;
     drop(features);

@@ -116,30 +116,46 @@ impl Sides<'_> {
     }
 }
 
-/// Lets the voxels beyond the band take the side of those next to them. Between two neighbours of which one is more
-/// than 1 h from the surface there is no surface.
+/// One bit a voxel of a brick: plane z, bit x + 8 y.
+type Bits = [u64; 8];
+
+/// The voxels x = 0 of a plane.
+const COLUMN: u64 = 0x0101_0101_0101_0101;
+
+/// Lets the voxels beyond the band take the side of those next to them, step by step. Between two neighbours of which
+/// one is more than 1 h from the surface there is no surface.
 fn spread(values: &mut Values, band: f32) {
-    let mut rest: Vec<u16> = (0..BRICK_VOXELS as u16).filter(|&n| values[n as usize].is_infinite()).collect();
-    while !rest.is_empty() {
-        let before = rest.len();
-        rest.retain(|&n| {
-            let known = neighbours(n).map(|m| values[m as usize]).find(|value| value.is_finite());
-            if let Some(value) = known {
-                values[n as usize] = band.copysign(value);
-            }
-            known.is_none()
-        });
-        if rest.len() == before {
+    if values.iter().all(|value| value.is_finite()) {
+        return;
+    }
+    let bits = |is: fn(f32) -> bool| -> Bits {
+        std::array::from_fn(|z| (0..64).fold(0, |bits, n| bits | u64::from(is(values[64 * z + n])) << n))
+    };
+    let (mut known, mut inside) = (bits(f32::is_finite), bits(|value| value < 0.0));
+    let beyond = known.map(|plane| !plane);
+    // A brick is 8 voxels wide: 21 steps lead anywhere.
+    while known != [u64::MAX; 8] {
+        let (more, inner) = (grown(&known), grown(&inside));
+        if more == known {
             break;
         }
+        for z in 0..8 {
+            inside[z] |= inner[z] & more[z] & !known[z];
+        }
+        known = more;
+    }
+    for (n, value) in values.iter_mut().enumerate().filter(|(n, _)| beyond[n / 64] >> (n % 64) & 1 == 1) {
+        *value = if inside[n / 64] >> (n % 64) & 1 == 1 { -band } else { band };
     }
 }
 
-/// The up to six neighbours of a voxel within its brick.
-fn neighbours(n: u16) -> impl Iterator<Item = u16> {
-    (0..3).flat_map(move |axis| {
-        let (step, at) = (1 << (3 * axis), n >> (3 * axis) & 7);
-        [(at > 0).then(|| n - step), (at < 7).then_some(n + step)].into_iter().flatten()
+/// The voxels themselves and their six neighbours.
+fn grown(bits: &Bits) -> Bits {
+    std::array::from_fn(|z| {
+        let plane = bits[z];
+        let along_x = (plane << 1) & !COLUMN | (plane >> 1) & !(COLUMN << 7);
+        let along_z = if z > 0 { bits[z - 1] } else { 0 } | if z < 7 { bits[z + 1] } else { 0 };
+        plane | along_x | plane << 8 | plane >> 8 | along_z
     })
 }
 

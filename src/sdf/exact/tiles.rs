@@ -143,14 +143,15 @@ pub(super) fn bricks(features: &Features, scope: &Scope, progress: &Progress) ->
     let vertices = grid.sorted(&features.vertices, scope.band, progress)?;
     let count = grid.counts.element_product() as usize;
     let done = std::sync::atomic::AtomicUsize::new(0);
-    let work = |n: usize| {
+    let work = |worker: &mut Worker, n: usize| {
         let lists = Lists { faces: faces.of(n), edges: edges.of(n), vertices: vertices.of(n) };
-        let found = halve(&grid.block(n), lists, features, scope, progress);
+        let found = halve(&grid.block(n), lists, features, scope, worker, progress);
         let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
         progress.share(done as f32 / count as f32);
         found
     };
-    let parts: Vec<Vec<Filled>> = (0..count).into_par_iter().map(work).collect::<Result<_, _>>()?;
+    let parts: Vec<Vec<Filled>> =
+        (0..count).into_par_iter().map_init(Worker::default, work).collect::<Result<_, _>>()?;
     Ok(parts.into_iter().flatten().collect())
 }
 
@@ -160,6 +161,7 @@ fn halve(
     lists: Lists,
     features: &Features,
     scope: &Scope,
+    worker: &mut Worker,
     progress: &Progress,
 ) -> Result<Vec<Filled>, Stopped> {
     progress.check()?;
@@ -168,12 +170,14 @@ fn halve(
         return Ok(out);
     }
     if block.size == TILE {
-        Worker::default().tile(block.base, scope.end, features, &lists, scope.band as f32, &mut out);
+        worker.tile(block.base, scope.end, features, &lists, scope.band as f32, &mut out);
         return Ok(out);
     }
     let children: Vec<Block> = block.children().collect();
-    let work = |child: &Block| halve(child, lists_of(child, &lists, features, scope), features, scope, progress);
-    let parts: Vec<Vec<Filled>> = children.par_iter().map(work).collect::<Result<_, _>>()?;
+    let work = |worker: &mut Worker, child: &Block| {
+        halve(child, lists_of(child, &lists, features, scope), features, scope, worker, progress)
+    };
+    let parts: Vec<Vec<Filled>> = children.par_iter().map_init(Worker::default, work).collect::<Result<_, _>>()?;
     Ok(parts.into_iter().flatten().collect())
 }
 
