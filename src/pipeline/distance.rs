@@ -18,7 +18,9 @@ use crate::vote::{Jury, VoteReport, VoteRule, Winding, doubts, vote_near_surface
 /// Bytes per stored voxel of the marched field: the field, what is done, and the front.
 const MARCHED_BYTES: f64 = 9.0;
 /// Seconds per stored voxel of the marched field.
-const MARCHED_SECONDS: f64 = 600e-9;
+const MARCHED_SECONDS: f64 = 1200e-9;
+/// Seconds per stored voxel for the winding number.
+const WINDING_SECONDS: f64 = 150e-9;
 
 /// How the distance is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -172,6 +174,9 @@ fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOption
         let votes = Input::of(std::slice::from_ref(input)).votes(lattice);
         memory += votes.memory as f64;
         seconds += votes.seconds;
+    }
+    if (options.method, options.sign) == (DistanceMethod::Exact, DistanceSign::Winding) {
+        seconds += WINDING_SECONDS * exact.voxels as f64;
     }
     if options.method == DistanceMethod::Robust {
         memory += MARCHED_BYTES * exact.voxels as f64;

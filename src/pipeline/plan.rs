@@ -19,8 +19,9 @@ const BASE_BYTES: f64 = 12e6;
 /// Seconds on one core per h² of surface, fit included, and per input triangle.
 const SECONDS_PER_CELL: f64 = 22e-6;
 const SECONDS_PER_TRIANGLE: f64 = 3e-6;
-/// Of that, what is spent up to the votes.
-const VOTES_SHARE: f64 = 0.2;
+/// Of that, and of the memory at the peak, what is spent up to the votes.
+const VOTES_SECONDS: f64 = 0.2;
+const VOTES_MEMORY: f64 = 0.4;
 /// Triangles of the result per h² of surface.
 const TRIANGLES_PER_CELL: f64 = 2.2;
 
@@ -95,10 +96,11 @@ impl Input {
         Ok(())
     }
 
-    /// What orientation, rays and votes cost: the peak of a whole run lies there.
+    /// What orientation, rays and votes cost.
     pub(super) fn votes(&self, lattice: &Lattice) -> Plan {
         let plan = self.cost(lattice);
-        Plan { seconds: VOTES_SHARE * plan.seconds, ..plan }
+        let memory = (VOTES_MEMORY * plan.memory as f64) as u64;
+        Plan { seconds: VOTES_SECONDS * plan.seconds, memory, ..plan }
     }
 
     fn cost(&self, lattice: &Lattice) -> Plan {
