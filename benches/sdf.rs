@@ -1,9 +1,10 @@
-//! The robust distance, and marching it to a band of 8 h.
+//! The robust distance, marching it to a band of 8 h, and the exact distance within that band.
 
 mod common;
 
 use divan::Bencher;
 use meshwright::progress::Progress;
+use meshwright::sdf::exact::{Band, ExactOptions, Sign, exact};
 use meshwright::sdf::{RobustOptions, march, robust};
 
 fn main() {
@@ -23,4 +24,11 @@ fn march_to_8(bencher: Bencher<'_, '_>, resolution: u32) {
     let near = robust(&ready.spans, &ready.planes, &ready.votes(), &RobustOptions::default(), &Progress::none());
     let near = near.expect("nobody stops it");
     bencher.bench(|| march(&near, &ready.lattice, 8.0, &Progress::none()));
+}
+
+#[divan::bench(args = [64, 128, 256])]
+fn exact_within_8(bencher: Bencher<'_, '_>, resolution: u32) {
+    let ready = common::ready(common::torus(256, false), resolution);
+    let options = ExactOptions { band: Band::Within(8.0), max_memory: None };
+    bencher.bench(|| exact(&ready.mesh, &ready.lattice, Sign::Pseudonormal, &options, &Progress::none()));
 }

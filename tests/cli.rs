@@ -4,6 +4,8 @@
 mod compare;
 #[path = "cli/files.rs"]
 mod files;
+#[path = "cli/sdf.rs"]
+mod sdf;
 #[path = "cli/solids.rs"]
 mod solids;
 #[path = "cli/stops.rs"]

@@ -5,6 +5,8 @@
 mod colours;
 #[path = "io/formats.rs"]
 mod formats;
+#[path = "io/grids.rs"]
+mod grids;
 #[path = "io/hostile.rs"]
 mod hostile;
 #[path = "io/memory.rs"]

@@ -5,10 +5,11 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::length::{Length, Simplify, parse_duration, parse_size};
+use super::length::{BandChoice, Length, Simplify, parse_duration, parse_size};
 use super::render::{ViewChoice, parse_view};
-use crate::io::{Format, Unit};
+use crate::io::{Format, GridFormat, Unit};
 use crate::orient::OrientMode;
+use crate::pipeline::{DistanceMethod, DistanceSign};
 use crate::vote::VoteRule;
 
 const EXIT_CODES: &str = "\
@@ -52,6 +53,9 @@ pub enum Verb {
     /// Any boolean expression, such as 'a - (b | c) & d'
     #[command(after_help = CSG_HELP)]
     Csg(CsgArgs),
+    /// Signed distance to a mesh over a lattice
+    #[command(after_help = EXIT_CODES)]
+    Sdf(SdfArgs),
     /// Say what is in a mesh file and what is wrong with it
     #[command(after_help = EXIT_CODES)]
     Inspect(InspectArgs),
@@ -111,6 +115,53 @@ pub struct CsgArgs {
     /// Flags of the pipeline and its output.
     #[command(flatten)]
     pub solid: SolidArgs,
+}
+
+/// `sdf IN -o OUT`.
+#[derive(Debug, Args)]
+pub struct SdfArgs {
+    /// The mesh; all its shells together are one solid
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// Where to write the field: .vti, .nrrd or .npy
+    #[arg(short, long, value_name = "OUT", required_unless_present = "plan")]
+    pub output: Option<PathBuf>,
+    /// Voxels along the longest side of the bounding box
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel")]
+    pub resolution: u32,
+    /// Size of a voxel, instead of --resolution
+    #[arg(long, value_name = "LEN")]
+    pub voxel: Option<Length>,
+    /// How far from the surface distances are found, or `full` for everywhere; the lattice reaches as far
+    #[arg(long, value_name = "LEN|full", default_value = "4h")]
+    pub band: BandChoice,
+    /// How the distance is found
+    #[arg(long, value_enum, default_value_t = MethodChoice::Exact)]
+    pub method: MethodChoice,
+    /// What tells inside from outside [default: pseudonormal for a valid solid, else votes]
+    #[arg(long, value_enum)]
+    pub sign: Option<SignChoice>,
+    /// Which side of the triangles is outside, unless the sign is by pseudonormals: find out, or trust the file
+    #[arg(long, value_enum, default_value_t = OrientChoice::Auto)]
+    pub orient: OrientChoice,
+    /// Format of the output, when its name should not decide
+    #[arg(long, value_name = "FORMAT")]
+    pub out_format: Option<GridFormat>,
+    /// Refuse to start when more memory would be needed (500M, 2G)
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    pub max_memory: Option<u64>,
+    /// Say what the run would cost, and do nothing
+    #[arg(long)]
+    pub plan: bool,
+    /// Write over an input file
+    #[arg(long)]
+    pub force: bool,
+    /// How the input is read.
+    #[command(flatten)]
+    pub reading: InputArgs,
+    /// Flags of every verb.
+    #[command(flatten)]
+    pub common: CommonArgs,
 }
 
 /// `inspect IN`.
@@ -356,6 +407,45 @@ impl From<VoteChoice> for VoteRule {
             VoteChoice::HalfRays => Self::HalfRays,
             VoteChoice::Majority => Self::Majority,
             VoteChoice::Paper => Self::Paper,
+        }
+    }
+}
+
+/// `--method` of `sdf`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MethodChoice {
+    /// To the nearest triangle, exactly
+    Exact,
+    /// The field that repairs are made from: smooth where the surface is broken, extended by fast marching
+    Robust,
+}
+
+impl From<MethodChoice> for DistanceMethod {
+    fn from(choice: MethodChoice) -> Self {
+        match choice {
+            MethodChoice::Exact => Self::Exact,
+            MethodChoice::Robust => Self::Robust,
+        }
+    }
+}
+
+/// `--sign` of `sdf`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SignChoice {
+    /// The votes of the rays, as in a repair
+    Votes,
+    /// The angle-weighted normal at the nearest point, for closed surfaces
+    Pseudonormal,
+    /// The generalised winding number
+    Winding,
+}
+
+impl From<SignChoice> for DistanceSign {
+    fn from(choice: SignChoice) -> Self {
+        match choice {
+            SignChoice::Votes => Self::Votes,
+            SignChoice::Pseudonormal => Self::Pseudonormal,
+            SignChoice::Winding => Self::Winding,
         }
     }
 }

@@ -45,6 +45,32 @@ impl fmt::Display for Simplify {
     }
 }
 
+/// How far from the surface a field reaches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BandChoice {
+    /// Over the whole lattice.
+    Full,
+    /// As far as this.
+    Within(Length),
+}
+
+impl FromStr for BandChoice {
+    type Err = QuantityError;
+
+    fn from_str(text: &str) -> Result<Self, QuantityError> {
+        if text == "full" { Ok(Self::Full) } else { text.parse().map(Self::Within) }
+    }
+}
+
+impl fmt::Display for BandChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Full => f.write_str("full"),
+            Self::Within(length) => length.fmt(f),
+        }
+    }
+}
+
 /// What a [`Length`] is measured against.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scale {

@@ -16,6 +16,7 @@ mod progress_bar;
 mod render;
 mod repair;
 mod report;
+mod sdf;
 mod session;
 mod solid;
 mod summary;
@@ -64,6 +65,9 @@ fn dispatch(verb: &Verb) -> Exit {
         Verb::Csg(args) => {
             solid("csg", &args.solid, &csg::paths(&args.operands), |session, report| csg::run(args, session, report))
         }
+        Verb::Sdf(args) => run("sdf", &args.common, &[&args.input], args.output.as_deref(), |session, report| {
+            sdf::run(args, session, report)
+        }),
         Verb::Inspect(args) => {
             run("inspect", &args.common, &[&args.input], None, |session, report| inspect::run(args, session, report))
         }

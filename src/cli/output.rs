@@ -3,12 +3,14 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use sha2::{Digest, Sha256};
+
 use super::args::OutputArgs;
 use super::exit::Failure;
-use super::input::{is_stream, plain_reason, sha256};
+use super::input::{hex, is_stream, plain_reason, sha256};
 use super::report::OutputEntry;
 use super::session::Session;
-use crate::io::{self, Colours, Format, Loaded, Unit, WriteOptions};
+use crate::io::{self, Colours, DistanceSamples, Format, GridFormat, Loaded, Unit, WriteOptions};
 use crate::mesh::TriMesh;
 
 /// Where a mesh goes, and how it is encoded.
@@ -133,9 +135,7 @@ fn write_file<T>(
     // A link stays a link: the file it leads to is replaced.
     let path = target.path.canonicalize().unwrap_or_else(|_| target.path.clone());
     let failed = |e: &std::io::Error| unwritable(&target.path, e);
-    let file = temporary_file(&path).map_err(|e| {
-        Failure::usage(format!("cannot write into {}: {}", folder_of(&path).display(), plain_reason(&e)))
-    })?;
+    let file = temporary_file(&path).map_err(|e| cannot_write_into(&path, &e))?;
     session.temporary(file.path());
     let mut buffer = std::io::BufWriter::with_capacity(1 << 20, file.as_file());
     encode(target, mesh, colours, &mut buffer)?;
@@ -147,6 +147,82 @@ fn write_file<T>(
     let verdict = judge(&read_back(&bytes, target)?)?;
     session.finish(|| file.persist(&path).map_err(|e| failed(&e.error)))?;
     Ok((entry(target, &bytes), verdict))
+}
+
+/// Writes what `encode` makes, in `format`. A regular file is read back and compared by its hash before it appears.
+pub fn write_grid(
+    path: &Path,
+    samples: &DistanceSamples<'_>,
+    format: GridFormat,
+    session: &Session,
+) -> Result<OutputEntry, Failure> {
+    let direct = is_stream(path) || path.metadata().is_ok_and(|metadata| !metadata.is_file());
+    let mut bytes = 0;
+    let mut hashed = |out: &mut dyn Write| -> Result<String, Failure> {
+        let mut hashing = Hashing { out, hash: Sha256::new(), bytes: 0, session };
+        let written = io::encode_grid(samples, format, &mut hashing).and_then(|()| hashing.flush());
+        // A run that was stopped shows as a failure to write; what stopped it comes first.
+        session.progress.check()?;
+        written.map_err(|e| unwritable(path, &e))?;
+        bytes = hashing.bytes;
+        Ok(hex(&hashing.hash.finalize()))
+    };
+    let sha256 = if is_stream(path) {
+        hashed(&mut std::io::stdout().lock())?
+    } else if direct {
+        let mut file = std::fs::OpenOptions::new().write(true).open(path).map_err(|e| unwritable(path, &e))?;
+        hashed(&mut file)?
+    } else {
+        let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+        let failed = |e: &std::io::Error| unwritable(path, e);
+        let file = temporary_file(&target).map_err(|e| cannot_write_into(&target, &e))?;
+        session.temporary(file.path());
+        let sha256 = hashed(&mut std::io::BufWriter::with_capacity(1 << 20, file.as_file()))?;
+        file.as_file().sync_all().map_err(|e| failed(&e))?;
+        session.progress.stage("verify")?;
+        let found = sha256_of_file(file.path(), session);
+        session.progress.check()?;
+        if found.map_err(|e| failed(&e))? != sha256 {
+            return Err(Failure::internal("the file does not hold what was written to it; it was removed"));
+        }
+        session.finish(|| file.persist(&target).map_err(|e| failed(&e.error)))?;
+        sha256
+    };
+    let path = if is_stream(path) { "standard output".into() } else { path.display().to_string() };
+    let unit = samples.unit.map(|unit| unit.to_string());
+    Ok(OutputEntry { path, format: format.to_string(), bytes, sha256, unit, validity: None })
+}
+
+/// Counts and hashes what goes through it, and stops when the run is to stop.
+struct Hashing<'a> {
+    out: &'a mut dyn Write,
+    hash: Sha256,
+    bytes: u64,
+    session: &'a Session,
+}
+
+impl Write for Hashing<'_> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.session.progress.check().map_err(std::io::Error::other)?;
+        let written = self.out.write(bytes)?;
+        self.hash.update(&bytes[..written]);
+        self.bytes += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.out.flush()
+    }
+}
+
+fn sha256_of_file(path: &Path, session: &Session) -> std::io::Result<String> {
+    let mut hashing = Hashing { out: &mut std::io::sink(), hash: Sha256::new(), bytes: 0, session };
+    std::io::copy(&mut std::fs::File::open(path)?, &mut hashing)?;
+    Ok(hex(&hashing.hash.finalize()))
+}
+
+fn cannot_write_into(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::usage(format!("cannot write into {}: {}", folder_of(path).display(), plain_reason(error)))
 }
 
 fn unwritable(path: &Path, error: &std::io::Error) -> Failure {

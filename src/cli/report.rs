@@ -11,7 +11,7 @@ use super::input::is_stream;
 use crate::compare::Comparison;
 use crate::io;
 use crate::mesh::Validity;
-use crate::pipeline::{Plan, Report, StageTime};
+use crate::pipeline::{DistancePlan, DistanceReport, Plan, Report, StageTime};
 
 /// Raised when a field changes its meaning or goes away; new fields do not raise it.
 pub const SCHEMA: u32 = 1;
@@ -38,10 +38,13 @@ pub struct RunReport {
     pub inputs: Vec<InputEntry>,
     /// The estimate, where one was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub plan: Option<Plan>,
+    pub plan: Option<PlanEntry>,
     /// What the pipeline found and did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pipeline: Option<Report>,
+    /// What `sdf` found and did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub distance: Option<DistanceReport>,
     /// What `compare` measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
@@ -57,6 +60,16 @@ pub struct RunReport {
     /// Largest resident memory, where the system tells it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peak_memory_bytes: Option<u64>,
+}
+
+/// What a run would cost.
+#[derive(Debug, Clone, Copy, Serialize)]
+#[serde(untagged)]
+pub enum PlanEntry {
+    /// Of `repair`, the booleans and `csg`.
+    Solid(Plan),
+    /// Of `sdf`.
+    Distance(DistancePlan),
 }
 
 /// One input in the report.
@@ -124,6 +137,7 @@ impl RunReport {
             inputs: Vec::new(),
             plan: None,
             pipeline: None,
+            distance: None,
             comparison: None,
             output: None,
             warnings: Vec::new(),

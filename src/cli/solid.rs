@@ -9,7 +9,7 @@ use super::exit::{Exit, Failure};
 use super::input::{self, Input};
 use super::length::{Scale, Simplify};
 use super::output::{Target, write_verified};
-use super::report::RunReport;
+use super::report::{PlanEntry, RunReport};
 use super::session::Session;
 use super::{limits, summary};
 use crate::fit::FitOptions;
@@ -138,7 +138,7 @@ fn plan(
 ) -> Result<Exit, Failure> {
     let meshes: Vec<TriMesh> = inputs.iter_mut().map(|input| std::mem::take(&mut input.loaded.mesh)).collect();
     let plan = pipeline::plan(&meshes, options).map_err(|e| failure(&e, &inputs, unit, args))?;
-    report.plan = Some(plan);
+    report.plan = Some(PlanEntry::Solid(plan));
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
         let text = summary::table(&summary::plan(&plan, unit.as_deref()));

@@ -36,11 +36,7 @@ pub fn say(session: &Session, report: &RunReport, unit: UnitName<'_>) {
 }
 
 fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
-    let mut rows = Vec::new();
-    for input in &report.inputs {
-        rows.push(("input", described(input)));
-        rows.extend(wrong(input).into_iter().map(|text| ("wrong", text)));
-    }
+    let mut rows = input_rows(report);
     if let Some(pipeline) = &report.pipeline {
         rows.extend(done(pipeline).into_iter().map(|text| ("done", text)));
         rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
@@ -50,9 +46,29 @@ fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
         rows.push(("result", format!("{}: {}", output.path, solid(validity, unit))));
         rows.push(("result", "closed, oriented, without self-intersections; checked on the written file".into()));
     }
-    let memory = report.peak_memory_bytes.map_or(String::new(), |bytes| format!(", {} of memory", words::bytes(bytes)));
-    rows.push(("time", format!("{}{memory}", words::seconds(report.seconds))));
+    rows.push(time(report));
     rows
+}
+
+/// What was read, and what is wrong with it.
+pub fn input_rows(report: &RunReport) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for input in &report.inputs {
+        rows.push(("input", described(input)));
+        rows.extend(wrong(input).into_iter().map(|text| ("wrong", text)));
+    }
+    rows
+}
+
+/// How long it took, and how much memory.
+pub fn time(report: &RunReport) -> Row {
+    let memory = report.peak_memory_bytes.map_or(String::new(), |bytes| format!(", {} of memory", words::bytes(bytes)));
+    ("time", format!("{}{memory}", words::seconds(report.seconds)))
+}
+
+/// The seconds of each stage.
+pub fn stages(report: &RunReport) -> impl Iterator<Item = Row> {
+    report.stages.iter().map(|stage| ("stage", format!("{:8.3} s  {}", stage.seconds, stage.stage)))
 }
 
 fn described(input: &InputEntry) -> String {
@@ -119,7 +135,8 @@ fn done(pipeline: &Report) -> Vec<String> {
     parts
 }
 
-fn voxel(voxel: f64, dims: [i32; 3], unit: UnitName<'_>) -> String {
+/// The voxel size, and how many of them.
+pub fn voxel(voxel: f64, dims: [i32; 3], unit: UnitName<'_>) -> String {
     let [x, y, z] = dims;
     format!("{} ({x} x {y} x {z} of them)", words::length(voxel, unit))
 }
@@ -179,9 +196,7 @@ fn details(report: &RunReport, pipeline: &Report, unit: UnitName<'_>) -> Vec<Row
         );
         rows.push(("doubt", text));
     }
-    for stage in &report.stages {
-        rows.push(("stage", format!("{:8.3} s  {}", stage.seconds, stage.stage)));
-    }
+    rows.extend(stages(report));
     rows
 }
 

@@ -1,6 +1,7 @@
 //! The pipelines: short functions that read like the drawing in the crate's documentation.
 
 mod colours;
+mod distance;
 mod plan;
 mod prepare;
 mod refine;
@@ -9,6 +10,10 @@ mod solid;
 mod stages;
 
 pub use colours::{carry_colours, classes};
+pub use distance::{
+    DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, distance,
+    plan_distance,
+};
 pub use plan::plan;
 pub use report::{LdiReport, Report, StageTime, ThinReport};
 

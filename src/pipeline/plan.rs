@@ -19,6 +19,9 @@ const BASE_BYTES: f64 = 12e6;
 /// Seconds on one core per h² of surface, fit included, and per input triangle.
 const SECONDS_PER_CELL: f64 = 22e-6;
 const SECONDS_PER_TRIANGLE: f64 = 3e-6;
+/// Of that, and of the memory at the peak, what is spent up to the votes.
+const VOTES_SECONDS: f64 = 0.2;
+const VOTES_MEMORY: f64 = 0.4;
 /// Triangles of the result per h² of surface.
 const TRIANGLES_PER_CELL: f64 = 2.2;
 
@@ -51,7 +54,7 @@ pub(super) fn check_limits(operands: &[TriMesh], lattice: &Lattice, options: &Op
 }
 
 /// What the cost depends on, apart from the lattice.
-struct Input {
+pub(super) struct Input {
     triangles: usize,
     vertices: usize,
     /// Square model units.
@@ -59,7 +62,7 @@ struct Input {
 }
 
 impl Input {
-    fn of(operands: &[TriMesh]) -> Self {
+    pub(super) fn of(operands: &[TriMesh]) -> Self {
         Self {
             triangles: operands.iter().map(|m| m.triangles.len()).sum(),
             vertices: operands.iter().map(|m| m.positions.len()).sum(),
@@ -91,6 +94,13 @@ impl Input {
             return Err(Error::TooLarge { reason });
         }
         Ok(())
+    }
+
+    /// What orientation, rays and votes cost.
+    pub(super) fn votes(&self, lattice: &Lattice) -> Plan {
+        let plan = self.cost(lattice);
+        let memory = (VOTES_MEMORY * plan.memory as f64) as u64;
+        Plan { seconds: VOTES_SECONDS * plan.seconds, memory, ..plan }
     }
 
     fn cost(&self, lattice: &Lattice) -> Plan {

@@ -1,10 +1,12 @@
 //! Signed distance near the surface, in h, negative inside.
 //!
 //! The *robust* field (Bærentzen §3.3–3.4): the voted volume, estimates from the LDI points,
-//! smoothing, gradient correction, and fast marching to a wanted band.
+//! smoothing, gradient correction, and fast marching to a wanted band. The *exact* field: the distance to the
+//! nearest triangle, at any point or over a lattice.
 
 mod correct;
 mod estimate;
+pub mod exact;
 mod march;
 mod neighbours;
 mod smooth;

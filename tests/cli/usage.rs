@@ -5,7 +5,7 @@ use super::{assert_empty, folder, run, run_in, sample};
 #[test]
 fn help_lists_every_verb_and_every_exit_status() {
     let help = run(&["--help"]).exits(0).text();
-    for word in ["repair", "union", "intersection", "difference", "csg", "inspect", "convert", "render", "130"] {
+    for word in ["repair", "union", "intersection", "difference", "csg", "sdf", "inspect", "convert", "render", "130"] {
         assert!(help.contains(word), "`{word}` is missing in:\n{help}");
     }
     assert!(run(&["repair", "--help"]).exits(0).text().contains("Make one closed, oriented solid"));

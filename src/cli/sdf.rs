@@ -1,0 +1,244 @@
+//! `sdf IN -o OUT`: the signed distance to a mesh over a lattice.
+
+use serde_json::json;
+
+use super::args::{SdfArgs, SignChoice};
+use super::exit::{Exit, Failure};
+use super::input::{self, Input, is_stream};
+use super::length::{BandChoice, Scale};
+use super::report::{PlanEntry, RunReport};
+use super::session::Session;
+use super::summary::{self, Row};
+use super::words::{self, UnitName};
+use super::{limits, output};
+use crate::io::{DistanceSamples, GridFormat, Unit};
+use crate::mesh::Validity;
+use crate::pipeline::{
+    self, DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, VoxelSize,
+};
+
+/// Makes the field of one file.
+pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
+    let format = format(args)?;
+    let mut inputs = report.timed("read", |_| input::read_all(&[&args.input], &args.reading, session))?;
+    let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
+    report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
+    let Some(input) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
+    report.warnings.extend(input.loaded.warnings.iter().cloned());
+    let validity = report.timed("examine", |_| {
+        session.progress.stage("examine")?;
+        input::examine(&input.loaded, session)
+    })?;
+    let options = options(args, input, unit, &validity)?;
+    report.options = resolved(args, unit, format, &options);
+    report.inputs[0].validity = Some(validity.clone());
+    let Some((path, format)) = args.output.as_deref().zip(format).filter(|_| !args.plan) else {
+        return plan(input, &options, unit, args, report);
+    };
+    report.warnings.extend(doubts(&options, &validity, format));
+    let outcome = pipeline::distance(&input.loaded.mesh, &options, &session.progress)
+        .map_err(|e| failure(&e, input, unit, args))?;
+    report.stages.extend(outcome.report.stages.iter().cloned());
+    let plane = |z: usize, values: &mut Vec<f32>| outcome.plane(z, values);
+    let samples = samples(&outcome, unit, &plane);
+    let entry = report.timed("write and verify", |_| {
+        session.progress.stage("write")?;
+        output::write_grid(path, &samples, format, session)
+    })?;
+    report.output = Some(entry);
+    report.distance = Some(outcome.report.clone());
+    let broken = limits::broken(report, options.max_memory);
+    report.warnings.extend(broken.iter().cloned());
+    report.seconds = session.start.elapsed().as_secs_f64();
+    report.peak_memory_bytes = super::report::peak_memory();
+    session.clear_bar();
+    say(session, report, &outcome.report, &options, unit);
+    Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+}
+
+/// The format of the output; everything about it that can be known before the work begins is checked.
+fn format(args: &SdfArgs) -> Result<Option<GridFormat>, Failure> {
+    let Some(path) = args.output.as_deref() else { return Ok(None) };
+    let format = match (args.out_format, GridFormat::from_path(path)) {
+        (Some(format), _) | (None, Some(format)) => format,
+        (None, None) if is_stream(path) => {
+            return Err(Failure::usage("standard output has no name that tells its format")
+                .hint("--out-format says it, for example --out-format nrrd"));
+        }
+        (None, None) => {
+            return Err(Failure::usage(format!("the name {} does not tell its format", path.display()))
+                .hint("end it in .vti, .nrrd or .npy, or give --out-format"));
+        }
+    };
+    output::check_overwrite(path, args.force, &[&args.input])?;
+    Ok(Some(format))
+}
+
+fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validity) -> Result<DistanceOptions, Failure> {
+    let bounds = input.loaded.mesh.bounds();
+    let (diagonal, longest) = bounds.map_or((0.0, 0.0), |b| (b.diagonal(), b.size().max_element()));
+    let voxel = match &args.voxel {
+        Some(length) => VoxelSize::Length(length.resolve(&Scale { unit, diagonal, voxel: None })?),
+        None => VoxelSize::Along(args.resolution),
+    };
+    let spacing = voxel.spacing(longest);
+    let band = match args.band {
+        BandChoice::Full => None,
+        // A mesh without extent has no voxel; the pipeline says so.
+        BandChoice::Within(_) if spacing <= 0.0 => None,
+        BandChoice::Within(length) => Some(length.resolve(&Scale { unit, diagonal, voxel: Some(spacing) })?),
+    };
+    let method = args.method.into();
+    let sign = match args.sign {
+        Some(SignChoice::Pseudonormal | SignChoice::Winding) if method == DistanceMethod::Robust => {
+            return Err(Failure::usage("--method robust goes by the votes; --sign cannot change that")
+                .hint("--method exact takes any --sign"));
+        }
+        Some(sign) => sign.into(),
+        None if validity.is_valid() && method == DistanceMethod::Exact => DistanceSign::Pseudonormal,
+        None => DistanceSign::Votes,
+    };
+    let (orient, max_memory) = (args.orient.into(), args.max_memory);
+    Ok(DistanceOptions { voxel, band, method, sign, orient, max_memory })
+}
+
+/// The options as the report states them, after defaults.
+fn resolved(
+    args: &SdfArgs,
+    unit: Option<Unit>,
+    format: Option<GridFormat>,
+    options: &DistanceOptions,
+) -> serde_json::Value {
+    let (resolution, voxel) = match options.voxel {
+        VoxelSize::Along(n) => (Some(n), None),
+        VoxelSize::Length(length) => (None, Some(length)),
+    };
+    json!({
+        "resolution": resolution,
+        "voxel": voxel,
+        "voxel_as_given": args.voxel.map(|length| length.to_string()),
+        "band": options.band,
+        "band_as_given": args.band.to_string(),
+        "method": options.method,
+        "sign": options.sign,
+        "orient": format!("{:?}", options.orient).to_lowercase(),
+        "out_format": format.map(|format| format.to_string()),
+        "unit": unit.map(|unit| unit.to_string()),
+        "threads": rayon::current_num_threads(),
+        "max_memory_bytes": options.max_memory,
+        "timeout_seconds": args.common.timeout.map(|timeout| timeout.as_secs_f64()),
+    })
+}
+
+/// What a user should know before trusting the field.
+fn doubts(options: &DistanceOptions, validity: &Validity, format: GridFormat) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if options.sign == DistanceSign::Pseudonormal && !validity.is_valid() {
+        sentences.push(
+            "the surface is no valid solid: by pseudonormals a place is inside or outside as seen from the nearest triangle"
+                .to_string(),
+        );
+    }
+    if !format.says_where() {
+        sentences.push(format!("{format} has no place for origin, spacing and unit; --report has them"));
+    }
+    sentences
+}
+
+fn failure(error: &pipeline::Error, input: &Input, unit: Option<Unit>, args: &SdfArgs) -> Failure {
+    let unit = unit.map(|unit| unit.to_string());
+    match error {
+        pipeline::Error::Memory { needed, allowed, .. } => {
+            Failure::memory(*needed, *allowed).hint("a narrower --band, or a lower --resolution")
+        }
+        _ => Failure::pipeline(error, std::slice::from_ref(&input.label), unit.as_deref(), args.voxel.is_some()),
+    }
+}
+
+fn plan(
+    input: &Input,
+    options: &DistanceOptions,
+    unit: Option<Unit>,
+    args: &SdfArgs,
+    report: &mut RunReport,
+) -> Result<Exit, Failure> {
+    let plan = pipeline::plan_distance(&input.loaded.mesh, options).map_err(|e| failure(&e, input, unit, args))?;
+    report.plan = Some(PlanEntry::Distance(plan));
+    if !args.common.json {
+        let unit = unit.map(|unit| unit.to_string());
+        output::write_stream(summary::table(&plan_rows(&plan, unit.as_deref())).as_bytes())?;
+    }
+    match options.max_memory {
+        Some(cap) if plan.memory > cap => {
+            Err(Failure::memory(plan.memory, cap).hint("a narrower --band, or a lower --resolution"))
+        }
+        _ => Ok(Exit::Done),
+    }
+}
+
+fn plan_rows(plan: &DistancePlan, unit: UnitName<'_>) -> Vec<Row> {
+    vec![
+        ("voxel", summary::voxel(plan.voxel, plan.dims, unit)),
+        ("stored", format!("about {}", words::plural(plan.stored as usize, "voxel"))),
+        ("file", format!("about {}", words::bytes(plan.file))),
+        ("memory", format!("about {}", words::bytes(plan.memory))),
+        ("time", format!("about {} on one core", words::seconds(plan.seconds))),
+    ]
+}
+
+fn samples<'a>(
+    outcome: &DistanceOutcome,
+    unit: Option<Unit>,
+    plane: &'a (dyn Fn(usize, &mut Vec<f32>) + Sync),
+) -> DistanceSamples<'a> {
+    let lattice = &outcome.lattice;
+    DistanceSamples {
+        origin: lattice.origin,
+        spacing: lattice.h,
+        dims: lattice.dims.to_array().map(|count| count as usize),
+        unit,
+        band: outcome.report.band,
+        plane,
+    }
+}
+
+/// Says what was read, how the field was made, and what came out.
+fn say(
+    session: &Session,
+    report: &RunReport,
+    distance: &DistanceReport,
+    options: &DistanceOptions,
+    unit: Option<Unit>,
+) {
+    let name = unit.map(|unit| unit.to_string());
+    let unit = name.as_deref();
+    let mut rows = summary::input_rows(report);
+    let side = match options.sign {
+        DistanceSign::Pseudonormal => "sides by the normal at the nearest point",
+        DistanceSign::Votes => "sides by the votes of the rays",
+        DistanceSign::Winding => "sides by the winding number",
+    };
+    let reach = match distance.band {
+        Some(band) => format!("within {} of the surface, ± that beyond", words::length(band, unit)),
+        None => "everywhere".into(),
+    };
+    let how = match options.method {
+        DistanceMethod::Exact => "distance to the nearest triangle",
+        DistanceMethod::Robust => "smooth distance, marched outwards",
+    };
+    rows.push(("done", format!("{how} {reach}; {side}")));
+    rows.push(("voxel", summary::voxel(distance.voxel, distance.dims, unit)));
+    if let Some(output) = &report.output {
+        let [low, high] = distance.range.map(|value| words::number(value.into()));
+        let range = words::with_unit(&format!("{low} to {high}"), unit);
+        rows.push(("result", format!("{}: {range}, negative inside; {}", output.path, words::bytes(output.bytes))));
+    }
+    rows.push(summary::time(report));
+    if session.verbose {
+        rows.extend(summary::stages(report));
+    }
+    session.say(summary::table(&rows).trim_end());
+    for warning in &report.warnings {
+        session.say(&format!("note: {warning}"));
+    }
+}

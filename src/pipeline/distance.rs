@@ -1,0 +1,320 @@
+//! From a mesh to its signed distance over a lattice.
+
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::plan::Input;
+use super::{Error, StageTime, VoxelSize, prepare, solid, stages};
+use crate::lattice::{BRICK, Grid, Lattice, Slot};
+use crate::ldi::{Expression, MAX_VOXELS, Spans, ldis, spans};
+use crate::mesh::TriMesh;
+use crate::orient::{OrientMode, OrientReport};
+use crate::progress::{Progress, Stopped};
+use crate::sdf::exact::{self, Band, ExactError, ExactOptions, Sign};
+use crate::sdf::{self, RobustOptions};
+use crate::vote::{Jury, VoteReport, VoteRule, Winding, doubts, vote_near_surface};
+
+/// Bytes per stored voxel of the marched field: the field, what is done, and the front.
+const MARCHED_BYTES: f64 = 9.0;
+/// Seconds per stored voxel of the marched field.
+const MARCHED_SECONDS: f64 = 1200e-9;
+/// Seconds per stored voxel for the winding number.
+const WINDING_SECONDS: f64 = 150e-9;
+
+/// How the distance is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DistanceMethod {
+    /// To the nearest triangle, exactly.
+    Exact,
+    /// The pipelines' own field: smooth where the surface is broken, extended by fast marching.
+    Robust,
+}
+
+/// What tells inside from outside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DistanceSign {
+    /// The pseudonormal at the nearest point of the mesh as it is: for closed, oriented ones.
+    Pseudonormal,
+    /// The votes of the rays, after cleaning and orientation: for soups.
+    Votes,
+    /// The generalised winding number, after cleaning and orientation.
+    Winding,
+}
+
+/// Options of [`distance`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DistanceOptions {
+    /// Spacing of the lattice.
+    pub voxel: VoxelSize,
+    /// How far from the surface the field is filled, model units; `None`: the whole lattice.
+    pub band: Option<f64>,
+    /// How the distance is found.
+    pub method: DistanceMethod,
+    /// What tells inside from outside; [`DistanceMethod::Robust`] goes by the votes always.
+    pub sign: DistanceSign,
+    /// Orientation of the input, unless the sign is by pseudonormals.
+    pub orient: OrientMode,
+    /// Upper bound for the working memory, bytes; `None`: no bound.
+    pub max_memory: Option<u64>,
+}
+
+/// A field and how it came about.
+#[derive(Debug, Clone)]
+pub struct DistanceOutcome {
+    /// Signed distance in h, negative inside.
+    pub field: Grid<f32>,
+    /// The lattice, which reaches as far around the mesh as the band.
+    pub lattice: Lattice,
+    /// What was found and done.
+    pub report: DistanceReport,
+}
+
+/// The account of one run.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct DistanceReport {
+    /// Position of the first voxel, model units.
+    pub origin: [f64; 3],
+    /// Voxel spacing, model units.
+    pub voxel: f64,
+    /// Voxels along x, y, z.
+    pub dims: [i32; 3],
+    /// Values are clamped to ± this, model units; `None`: they are not.
+    pub band: Option<f64>,
+    /// Voxels whose distance is stored.
+    pub stored: usize,
+    /// Voxels of the lattice that lie inside.
+    pub inside: usize,
+    /// The smallest and the largest value, model units.
+    pub range: [f32; 2],
+    /// Cleaning and orientation; `None` where the mesh was taken as it is.
+    pub orient: Option<OrientReport>,
+    /// The votes, where there were any.
+    pub vote: Option<VoteReport>,
+    /// Wall-clock time of each stage, in order.
+    pub stages: Vec<StageTime>,
+}
+
+/// What a field would cost, before it is made.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DistancePlan {
+    /// Voxel spacing, model units.
+    pub voxel: f64,
+    /// Voxels along x, y, z.
+    pub dims: [i32; 3],
+    /// Estimated voxels whose distance is stored.
+    pub stored: u64,
+    /// Bytes of the numbers in a file.
+    pub file: u64,
+    /// Estimated peak memory, bytes.
+    pub memory: u64,
+    /// Estimated seconds on one core of an ordinary machine.
+    pub seconds: f64,
+}
+
+/// What [`distance`] would cost.
+pub fn plan_distance(input: &TriMesh, options: &DistanceOptions) -> Result<DistancePlan, Error> {
+    let (lattice, band) = place(input, options)?;
+    Ok(plan(input, &lattice, band, options))
+}
+
+/// The signed distance to one mesh. All its shells together are one solid.
+///
+/// # Errors
+/// See [`Error`].
+pub fn distance(input: &TriMesh, options: &DistanceOptions, progress: &Progress) -> Result<DistanceOutcome, Error> {
+    let (lattice, band) = place(input, options)?;
+    let needed = plan(input, &lattice, band, options).memory;
+    if let Some(allowed) = options.max_memory.filter(|&allowed| needed > allowed) {
+        return Err(Error::Memory { needed, allowed, voxel_that_fits: None });
+    }
+    let mut stages = stages::Stages::new(progress);
+    let run = Run { lattice, band, options, progress };
+    let mut report = DistanceReport::default();
+    let field = match (options.method, options.sign) {
+        (DistanceMethod::Exact, DistanceSign::Pseudonormal) => {
+            stages.begin("distance")?;
+            run.exact(input, Sign::Pseudonormal)?
+        }
+        _ => run.of_soup(input, &mut stages, &mut report)?,
+    };
+    report.stages = stages.finish();
+    let mut outcome = DistanceOutcome { field, lattice, report };
+    outcome.describe(band);
+    Ok(outcome)
+}
+
+/// The lattice, grown by the band, and the band in h.
+fn place(input: &TriMesh, options: &DistanceOptions) -> Result<(Lattice, Band), Error> {
+    let mut lattice = prepare::lattice(&prepare::bounds(std::slice::from_ref(input))?, options.voxel)?;
+    let Some(length) = options.band else { return Ok((lattice, Band::Full)) };
+    let band = length / lattice.h;
+    let longest = f64::from(lattice.dims.max_element());
+    if !(band > 0.0 && longest + 2.0 * band + 2.0 < f64::from(MAX_VOXELS)) {
+        let reason = format!(
+            "a band of {length} around the mesh makes a lattice of {:.0} voxels, and at most {MAX_VOXELS} are possible: \
+             a narrower band, `full`, or a larger voxel",
+            longest + 2.0 * band
+        );
+        return Err(Error::VoxelSize { reason });
+    }
+    let room = band.ceil() as i32;
+    lattice.origin -= DVec3::splat(f64::from(room) * lattice.h);
+    lattice.dims += 2 * room;
+    Ok((lattice, Band::Within(band)))
+}
+
+fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOptions) -> DistancePlan {
+    let exact = exact::cost(input, lattice, band);
+    let all = lattice.dims.as_dvec3().element_product();
+    let (mut memory, mut seconds) = (exact.memory as f64, exact.seconds);
+    if (options.method, options.sign) != (DistanceMethod::Exact, DistanceSign::Pseudonormal) {
+        let votes = Input::of(std::slice::from_ref(input)).votes(lattice);
+        memory += votes.memory as f64;
+        seconds += votes.seconds;
+    }
+    if (options.method, options.sign) == (DistanceMethod::Exact, DistanceSign::Winding) {
+        seconds += WINDING_SECONDS * exact.voxels as f64;
+    }
+    if options.method == DistanceMethod::Robust {
+        memory += MARCHED_BYTES * exact.voxels as f64;
+        seconds += MARCHED_SECONDS * exact.voxels as f64;
+    }
+    DistancePlan {
+        voxel: lattice.h,
+        dims: lattice.dims.to_array(),
+        stored: exact.voxels,
+        file: (4.0 * all) as u64,
+        memory: memory as u64,
+        seconds,
+    }
+}
+
+/// What the ways to a field share.
+struct Run<'a> {
+    lattice: Lattice,
+    band: Band,
+    options: &'a DistanceOptions,
+    progress: &'a Progress,
+}
+
+impl Run<'_> {
+    fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<Grid<f32>, Error> {
+        let options = ExactOptions { band: self.band, max_memory: None };
+        exact::exact(mesh, &self.lattice, sign, &options, self.progress).map_err(|error| match error {
+            ExactError::Stopped(stopped) => stopped.into(),
+            ExactError::Empty => Error::Empty { operand: 0 },
+            other => Error::VoxelSize { reason: other.to_string() },
+        })
+    }
+
+    /// By way of orientation, rays and votes.
+    fn of_soup(
+        &self,
+        input: &TriMesh,
+        stages: &mut stages::Stages<'_>,
+        report: &mut DistanceReport,
+    ) -> Result<Grid<f32>, Error> {
+        let (progress, orient, lattice) = (self.progress, self.options.orient, &self.lattice);
+        stages.begin("orient")?;
+        let mut soup = prepare::prepare(std::slice::from_ref(input), orient, progress)?;
+        stages.begin("ldi")?;
+        let mut layers = ldis(&soup.mesh, lattice, 1, progress)?;
+        soup.turn_patches(&mut layers, orient, progress)?;
+        report.orient = soup.reports.first().cloned();
+        let expression = Expression::Operand(0);
+        let winding = Winding::new(&soup.mesh, &soup.operands, lattice, progress);
+        if (self.options.method, self.options.sign) == (DistanceMethod::Exact, DistanceSign::Winding) {
+            drop(layers);
+            stages.begin("distance")?;
+            return self.exact(&soup.mesh, Sign::Winding(&winding, &expression));
+        }
+        let hits = solid::count(&layers);
+        stages.begin("spans")?;
+        let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, &expression));
+        let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
+        solid::refuse_scattered(&spans, hits)?;
+        stages.begin("vote")?;
+        let (operands, rule) = (&soup.operands, VoteRule::Winding);
+        let jury = Jury { spans: &spans, operands, expression: &expression, rule, winding: &winding };
+        let votes = vote_near_surface(&jury, progress)?;
+        report.vote = Some(doubts(&votes, lattice));
+        stages.begin("distance")?;
+        match self.options.method {
+            DistanceMethod::Exact => self.exact(&soup.mesh, Sign::Votes(&votes)),
+            DistanceMethod::Robust => {
+                let near = sdf::robust(&spans, &soup.planes(lattice), &votes, &RobustOptions::default(), progress)?;
+                drop(spans);
+                Ok(self.march(&near)?)
+            }
+        }
+    }
+
+    /// Extends the robust field to the band, or to the whole lattice.
+    fn march(&self, near: &Grid<f32>) -> Result<Grid<f32>, Stopped> {
+        let reach = match self.band {
+            Band::Within(h) => h as f32,
+            Band::Full => self.lattice.dims.as_vec3().length() + BRICK as f32,
+        };
+        let mut field = sdf::march(near, &self.lattice, reach, self.progress)?;
+        if let Band::Within(h) = self.band {
+            // Marching goes a little beyond narrow bands.
+            let band = h as f32;
+            field.values.par_iter_mut().flatten().for_each(|value| *value = value.clamp(-band, band));
+            (field.inside, field.outside) = (-band, band);
+        }
+        Ok(field)
+    }
+}
+
+impl DistanceOutcome {
+    /// Appends the values of plane `z` of the lattice, model units, x fastest, then y.
+    pub fn plane(&self, z: usize, values: &mut Vec<f32>) {
+        let [width, height] = [self.lattice.dims.x as usize, self.lattice.dims.y as usize];
+        let start = values.len();
+        values.resize(start + width * height, 0.0);
+        let (z, layer, h) = (z as i32 / BRICK, z % BRICK as usize, self.lattice.h);
+        let scaled = |value: f32| (f64::from(value) * h) as f32;
+        for (y, rows) in values[start..].chunks_mut(8 * width).enumerate() {
+            for x in 0..width.div_ceil(8) {
+                let slot = self.field.bricks.slot(IVec3::new(x as i32, y as i32, z));
+                for (row, values) in rows.chunks_mut(width).enumerate() {
+                    let values = &mut values[8 * x..width.min(8 * x + 8)];
+                    match slot {
+                        Slot::Active(n) => {
+                            let brick = &self.field.values[n as usize][64 * layer + 8 * row..];
+                            values.iter_mut().zip(brick).for_each(|(value, &from)| *value = scaled(from));
+                        }
+                        Slot::Inside => values.fill(scaled(self.field.inside)),
+                        Slot::Outside => values.fill(scaled(self.field.outside)),
+                    }
+                }
+            }
+        }
+    }
+
+    /// Fills in what the report says of the field.
+    fn describe(&mut self, band: Band) {
+        let planes = (0..self.lattice.dims.z as usize).into_par_iter();
+        let of_plane = |z| {
+            let mut values = Vec::new();
+            self.plane(z, &mut values);
+            let start = (0usize, [f32::INFINITY, f32::NEG_INFINITY]);
+            values
+                .iter()
+                .fold(start, |(inside, [low, high]), &v| (inside + usize::from(v < 0.0), [low.min(v), high.max(v)]))
+        };
+        let parts: Vec<(usize, [f32; 2])> = planes.map(of_plane).collect();
+        let report = &mut self.report;
+        report.origin = self.lattice.origin.to_array();
+        report.voxel = self.lattice.h;
+        report.dims = self.lattice.dims.to_array();
+        report.band = if let Band::Within(h) = band { Some(h * self.lattice.h) } else { None };
+        report.stored = self.field.values.len() * crate::lattice::BRICK_VOXELS;
+        report.inside = parts.iter().map(|part| part.0).sum();
+        let range = parts.iter().map(|part| part.1);
+        report.range = range.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], [low, high]| [a.min(low), b.max(high)]);
+    }
+}

@@ -1,0 +1,12 @@
+//! The exact distance: at points against looking at all triangles, over lattices against points.
+
+mod common;
+
+#[path = "exact/lattices.rs"]
+mod lattices;
+#[path = "exact/points.rs"]
+mod points;
+#[path = "exact/shapes.rs"]
+mod shapes;
+#[path = "exact/soups.rs"]
+mod soups;
