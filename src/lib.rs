@@ -24,6 +24,7 @@ pub mod io;
 pub mod lattice;
 pub mod ldi;
 pub mod mesh;
+pub mod morphology;
 pub mod orient;
 pub mod picture;
 pub mod pipeline;

@@ -53,6 +53,18 @@ pub enum Verb {
     /// Any boolean expression, such as 'a - (b | c) & d'
     #[command(after_help = CSG_HELP)]
     Csg(CsgArgs),
+    /// Grow a solid by a length on all sides
+    #[command(after_help = EXIT_CODES)]
+    Dilate(GrowArgs),
+    /// Shrink a solid by a length on all sides
+    #[command(after_help = EXIT_CODES)]
+    Erode(GrowArgs),
+    /// Take away what a ball inside cannot reach: whiskers, fins, thin walls
+    #[command(after_help = EXIT_CODES)]
+    Open(MorphologyArgs),
+    /// Fill what a ball outside cannot reach: cracks, canals, narrow gaps
+    #[command(after_help = EXIT_CODES)]
+    Close(MorphologyArgs),
     /// Signed distance to a mesh over a lattice
     #[command(after_help = EXIT_CODES)]
     Sdf(SdfArgs),
@@ -90,6 +102,39 @@ pub struct RepairArgs {
     /// Flags of the pipeline and its output.
     #[command(flatten)]
     pub solid: SolidArgs,
+}
+
+/// `open IN -o OUT --radius LEN`, `close` too.
+#[derive(Debug, Args)]
+pub struct MorphologyArgs {
+    /// The mesh; it is repaired first, all its shells together are one solid
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// Radius of the ball (0.4mm, 2h for two voxels, 1% of the diagonal)
+    #[arg(short, long, value_name = "LEN")]
+    pub radius: Length,
+    /// Flags of the pipeline and its output.
+    #[command(flatten)]
+    pub solid: SolidArgs,
+}
+
+/// `dilate IN -o OUT --radius LEN`, `erode` too.
+#[derive(Debug, Args)]
+pub struct GrowArgs {
+    /// What is grown and by how much.
+    #[command(flatten)]
+    pub morphology: MorphologyArgs,
+    /// Keep edges sharp that would become round, up to LIMIT times the radius from where they were
+    #[arg(long, value_name = "LIMIT", num_args = 0..=1, default_missing_value = "2", require_equals = true, value_parser = mitre_limit)]
+    pub sharp: Option<f64>,
+}
+
+/// A number of at least 1.
+fn mitre_limit(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(limit) if (1.0..=100.0).contains(&limit) => Ok(limit),
+        _ => Err("a number from 1 to 100 is needed".into()),
+    }
 }
 
 /// `union A B... -o OUT` and its sisters.

@@ -16,5 +16,5 @@ pub fn run(
 ) -> Result<Exit, Failure> {
     let paths: Vec<_> = args.inputs.iter().map(AsRef::as_ref).collect();
     let expression = expression(paths.len());
-    solid::run(&Job { paths, names: Vec::new(), expression, args: &args.solid }, session, report)
+    solid::run(&Job { paths, names: Vec::new(), change: None, expression, args: &args.solid }, session, report)
 }

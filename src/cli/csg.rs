@@ -15,6 +15,7 @@ pub fn run(args: &CsgArgs, session: &Session, report: &mut RunReport) -> Result<
     let names: Vec<&str> = operands.iter().map(|(name, _)| *name).collect();
     let expression = csg_parser::parse(&args.expression, &names).map_err(|e| explain(&args.expression, &names, &e))?;
     let job = Job {
+        change: None,
         paths: operands.iter().map(|(_, path)| *path).collect(),
         names: names.iter().map(|name| name.to_string()).collect(),
         expression,

@@ -11,6 +11,7 @@ mod input;
 mod inspect;
 mod length;
 mod limits;
+mod morphology;
 mod output;
 mod progress_bar;
 mod render;
@@ -29,6 +30,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use crate::ldi::Expression;
+use crate::morphology::Operation;
 use args::{Cli, CommonArgs, SolidArgs, Verb};
 use exit::{Exit, Failure};
 use report::RunReport;
@@ -65,6 +67,10 @@ fn dispatch(verb: &Verb) -> Exit {
         Verb::Csg(args) => {
             solid("csg", &args.solid, &csg::paths(&args.operands), |session, report| csg::run(args, session, report))
         }
+        Verb::Dilate(args) => grow("dilate", args, Operation::Dilate),
+        Verb::Erode(args) => grow("erode", args, Operation::Erode),
+        Verb::Open(args) => morphology("open", args, Operation::Open),
+        Verb::Close(args) => morphology("close", args, Operation::Close),
         Verb::Sdf(args) => run("sdf", &args.common, &[&args.input], args.output.as_deref(), |session, report| {
             sdf::run(args, session, report)
         }),
@@ -91,6 +97,16 @@ fn dispatch(verb: &Verb) -> Exit {
 fn booleans(verb: &'static str, args: &args::BooleanArgs, expression: fn(usize) -> Expression) -> Exit {
     let paths: Vec<&Path> = args.inputs.iter().map(AsRef::as_ref).collect();
     solid(verb, &args.solid, &paths, |session, report| boolean::run(args, expression, session, report))
+}
+
+fn grow(verb: &'static str, args: &args::GrowArgs, operation: Operation) -> Exit {
+    solid(verb, &args.morphology.solid, &[&args.morphology.input], |session, report| {
+        morphology::grow(args, operation, session, report)
+    })
+}
+
+fn morphology(verb: &'static str, args: &args::MorphologyArgs, operation: Operation) -> Exit {
+    solid(verb, &args.solid, &[&args.input], |session, report| morphology::run(args, operation, None, session, report))
 }
 
 fn solid(

@@ -9,7 +9,12 @@ use crate::ldi::Expression;
 
 /// Repairs one file: all its shells are one operand.
 pub fn run(args: &RepairArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
-    let job =
-        Job { paths: vec![&args.input], names: Vec::new(), expression: Expression::Operand(0), args: &args.solid };
+    let job = Job {
+        paths: vec![&args.input],
+        names: Vec::new(),
+        expression: Expression::Operand(0),
+        change: None,
+        args: &args.solid,
+    };
     solid::run(&job, session, report)
 }

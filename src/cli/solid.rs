@@ -7,7 +7,7 @@ use serde_json::json;
 use super::args::SolidArgs;
 use super::exit::{Exit, Failure};
 use super::input::{self, Input};
-use super::length::{Scale, Simplify};
+use super::length::{Length, Scale, Simplify};
 use super::output::{Target, write_verified};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
@@ -16,7 +16,8 @@ use crate::fit::FitOptions;
 use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
-use crate::pipeline::{self, Options, Outcome, TriangleSource, VoxelSize};
+use crate::morphology::Operation;
+use crate::pipeline::{self, MorphologyOptions, Options, Outcome, TriangleSource, VoxelSize};
 use crate::sdf::{RobustOptions, Trust};
 use crate::vote::VoteRule;
 
@@ -28,8 +29,21 @@ pub struct Job<'a> {
     pub names: Vec<String>,
     /// The result in terms of the operands.
     pub expression: Expression,
+    /// What is done to that solid.
+    pub change: Option<Change>,
     /// The flags.
     pub args: &'a SolidArgs,
+}
+
+/// Morphology, as asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct Change {
+    /// What is done.
+    pub operation: Operation,
+    /// The radius.
+    pub radius: Length,
+    /// How far sharp edges may reach, times the radius.
+    pub mitre: Option<f64>,
 }
 
 /// Runs the pipeline from file to file.
@@ -168,8 +182,16 @@ fn make(
         Ok::<(), Failure>(())
     })?;
     let meshes: Vec<TriMesh> = inputs.iter().map(|input| input.loaded.mesh.clone()).collect();
-    let outcome = pipeline::boolean(&meshes, &job.expression, options, &session.progress)
-        .map_err(|e| failure(&e, inputs, unit, args))?;
+    let outcome = match &job.change {
+        None => pipeline::boolean(&meshes, &job.expression, options, &session.progress),
+        Some(change) => {
+            let change = changed(change, &meshes, unit, options)?;
+            report.options["radius"] = json!(change.radius);
+            report.options["mitre"] = json!(change.mitre);
+            pipeline::morphology(&meshes[0], &change, &session.progress)
+        }
+    };
+    let outcome = outcome.map_err(|e| failure(&e, inputs, unit, args))?;
     drop(meshes);
     report.stages.extend(outcome.report.stages.iter().cloned());
     report.warnings.extend(outcome.report.warnings.iter().cloned());
@@ -196,6 +218,20 @@ fn make(
     let name = unit.map(|unit| unit.to_string());
     summary::say(session, report, name.as_deref());
     Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+}
+
+/// The operation with its radius in model units.
+fn changed(
+    change: &Change,
+    meshes: &[TriMesh],
+    unit: Option<Unit>,
+    options: &Options,
+) -> Result<MorphologyOptions, Failure> {
+    let bounds = meshes.iter().filter_map(TriMesh::bounds).reduce(|a, b| a.union(&b));
+    let (diagonal, longest) = bounds.map_or((0.0, 0.0), |b| (b.diagonal(), b.size().max_element()));
+    let scale = Scale { unit, diagonal, voxel: Some(options.voxel.spacing(longest)) };
+    let (operation, mitre) = (change.operation, change.mitre);
+    Ok(MorphologyOptions { operation, mitre, radius: change.radius.resolve(&scale)?, solid: options.clone() })
 }
 
 /// What is original, and what closes a hole.

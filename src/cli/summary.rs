@@ -6,6 +6,7 @@ use super::session::Session;
 use super::words::{self, UnitName};
 use crate::io::{Loaded, Unit};
 use crate::mesh::Validity;
+use crate::morphology::Operation;
 use crate::pipeline::{Plan, Report};
 
 /// A label and what stands behind it; rows of one block are aligned.
@@ -38,7 +39,7 @@ pub fn say(session: &Session, report: &RunReport, unit: UnitName<'_>) {
 fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
     let mut rows = input_rows(report);
     if let Some(pipeline) = &report.pipeline {
-        rows.extend(done(pipeline).into_iter().map(|text| ("done", text)));
+        rows.extend(done(pipeline, unit).into_iter().map(|text| ("done", text)));
         rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
         rows.extend(thin(pipeline, unit).map(|text| ("thin", text)));
     }
@@ -95,7 +96,7 @@ fn wrong(input: &InputEntry) -> Vec<String> {
     }
 }
 
-fn done(pipeline: &Report) -> Vec<String> {
+fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
     let sum = |field: fn(&crate::orient::OrientReport) -> usize| pipeline.orient.iter().map(field).sum::<usize>();
     let mut parts = Vec::new();
     let mut add = |n: usize, word: &str, what: &str| {
@@ -128,7 +129,20 @@ fn done(pipeline: &Report) -> Vec<String> {
         };
         parts.push(format!("{points} set on edges and corners{given_up}"));
     }
-    if pipeline.closed_triangles > 0 {
+    if let Some(change) = &pipeline.morphology {
+        let by = words::length(change.radius, unit);
+        let word = match change.operation {
+            Operation::Dilate => "grown by",
+            Operation::Erode => "shrunk by",
+            Operation::Close => "closed by a ball of",
+            Operation::Open => "opened by a ball of",
+        };
+        let volume = words::percent_change(change.volume_before, change.volume_after);
+        parts.push(format!(
+            "{word} {by}: volume {volume}; {} new (--map shows them)",
+            words::plural(change.made, "triangle")
+        ));
+    } else if pipeline.closed_triangles > 0 {
         let triangles = words::plural(pipeline.closed_triangles, "triangle");
         parts.push(format!("{triangles} of the result close holes (--map shows them)"));
     }

@@ -108,6 +108,14 @@ pub fn seconds(s: f64) -> String {
     if s < 100.0 { format!("{s:.2} s") } else { format!("{}:{:02} min", (s / 60.0) as u64, (s % 60.0) as u64) }
 }
 
+/// By how much something changed, in percent.
+pub fn percent_change(before: f64, after: f64) -> String {
+    match before != 0.0 {
+        true => format!("{:+.3} %", 100.0 * (after / before - 1.0)),
+        false => "from nothing".into(),
+    }
+}
+
 /// A share of a whole, in percent.
 pub fn percent(part: usize, whole: usize) -> String {
     let share = 100.0 * part as f64 / whole.max(1) as f64;

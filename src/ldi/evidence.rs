@@ -12,6 +12,8 @@ pub struct Evidence {
     pub bounding: Vec<[u32; 2]>,
     /// Crossings on silent rays, which say nothing.
     pub silent: Vec<u32>,
+    /// Triangles that do not bound the solid, whatever the rays say; empty for none.
+    pub changed: Vec<bool>,
 }
 
 impl Evidence {
@@ -19,7 +21,20 @@ impl Evidence {
     pub fn new(layers: &[Layers], triangles: usize) -> Self {
         let mut crossed = vec![0; triangles];
         layers.iter().flat_map(|layers| &layers.hits).for_each(|hit| crossed[hit.triangle() as usize] += 1);
-        Self { crossed, bounding: vec![[0; 2]; triangles], silent: vec![0; triangles] }
+        Self { crossed, bounding: vec![[0; 2]; triangles], silent: vec![0; triangles], changed: Vec::new() }
+    }
+
+    /// From samples of the triangles of a valid solid: how many there are of each triangle, and how many still bound
+    /// the solid that is made of it.
+    pub fn of_samples(samples: impl Iterator<Item = (u32, u32)>) -> Self {
+        let mut evidence = Self::default();
+        for (tried, bounding) in samples {
+            evidence.crossed.push(tried);
+            evidence.bounding.push([bounding, 0]);
+            evidence.silent.push(0);
+            evidence.changed.push(bounding < tried);
+        }
+        evidence
     }
 
     /// Counts which of the crossings are left in the spans made of these layers.

@@ -2,6 +2,7 @@
 
 mod colours;
 mod distance;
+mod morphology;
 mod plan;
 mod prepare;
 mod refine;
@@ -14,6 +15,7 @@ pub use distance::{
     DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, distance,
     plan_distance,
 };
+pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
 pub use plan::plan;
 pub use report::{LdiReport, Report, StageTime, ThinReport};
 

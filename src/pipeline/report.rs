@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::MorphologyReport;
+
 use crate::fit::FitReport;
 use crate::orient::OrientReport;
 use crate::vote::VoteReport;
@@ -23,7 +25,9 @@ pub struct Report {
     pub thin: ThinReport,
     /// Sharp edges and simplification; `None` without a fit.
     pub fit: Option<FitReport>,
-    /// Triangles of the result that close holes.
+    /// Dilation, erosion, closing or opening; `None` without.
+    pub morphology: Option<MorphologyReport>,
+    /// Triangles of the result that close holes, or that morphology has made.
     pub closed_triangles: usize,
     /// Wall-clock time of each stage, in order.
     pub stages: Vec<StageTime>,

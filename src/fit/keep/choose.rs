@@ -80,6 +80,7 @@ impl Kept {
 /// they differ, what is near those that say no is left out and the rest asked again.
 pub(super) fn chosen(facets: &Facets<'_>, evidence: &Evidence, h: f64, progress: &Progress) -> Result<Kept, Stopped> {
     let mut kept = candidates(facets.mesh(), h, progress)?;
+    kept.is.iter_mut().zip(&evidence.changed).for_each(|(is, changed)| *is &= !changed);
     let patches = Patches::new(&kept, evidence);
     let mut torn = vec![false; kept.mesh.positions.len()];
     for t in 0..kept.is.len() {

@@ -1,0 +1,139 @@
+//! The second step of a closing or opening, and what the two leave as it was.
+
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
+
+use super::offset::tangent;
+use super::{Body, MorphologyError, Offset};
+use crate::contour::{ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
+use crate::lattice::{BRICK, Grid, Lattice};
+use crate::mesh::{Plane, TriMesh};
+use crate::progress::{Progress, Stopped};
+use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
+
+/// Voxels of the field beyond the level.
+const MARGIN: f64 = 2.5;
+
+/// Where the way there and back ends this near to where it began, h, nothing has changed. The first step's surface is
+/// a mesh; where it is round, its chords bring the second step off by h² / 8 r, 0.06 h at r = 2 h.
+const UNCHANGED: f64 = 0.12;
+
+/// A ball of radius r touches a point from outside when it goes into the solid by no more than this, h. At a
+/// concave edge of angle θ that is r θ² / 2, four times what closing fills there.
+const TOUCHING: f64 = 0.2;
+
+/// Most samples along the edge of a triangle.
+const MOST_SAMPLES: usize = 64;
+
+/// The solid `first`, a level of `original`'s distance at `radius` (model units, positive outside), taken back by the same
+/// length: a closing for a positive radius, an opening for a negative one. Where that changes nothing, the vertices lie on
+/// triangles of `original` and have their numbers; elsewhere those of planes, numbered after them.
+///
+/// # Errors
+/// Those of [`exact`], and a stop.
+pub fn closed(
+    original: &Body<'_>,
+    first: &Body<'_>,
+    (mesh, first_mesh): (&TriMesh, &TriMesh),
+    radius: f64,
+    lattice: &Lattice,
+    progress: &Progress,
+) -> Result<Offset, MorphologyError> {
+    let near = |mesh: &TriMesh, band: f64| {
+        exact(mesh, lattice, Sign::Pseudonormal, &ExactOptions { band: Band::Within(band), max_memory: None }, progress)
+    };
+    let mut field = near(first_mesh, radius.abs() / lattice.h + MARGIN)?;
+    let own = near(mesh, MARGIN)?;
+    let level = (radius / lattice.h) as f32;
+    field.values.par_iter_mut().flatten().for_each(|value| *value += level);
+    (field.inside, field.outside) = (field.inside + level, field.outside + level);
+    follow(&mut field, &own);
+    let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
+    let crossing = |edge: Edge| {
+        let voxels = [edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]];
+        let ends = voxels.map(model);
+        let at = |t: f64| ends[0].lerp(ends[1], t);
+        let h = lattice.h;
+        let unchanged = |t: &f64| (first.at(at(*t), radius.abs() + h).0 + radius).abs() < UNCHANGED * h;
+        let own = voxels.map(|voxel| f64::from(own.get(voxel)) * h);
+        match original.passage(ends, own, 0.0).filter(unchanged) {
+            Some(t) => Some(Crossing { t, triangle: original.distance().at(at(t))?.triangle }),
+            None => {
+                let values = ends.map(|p| first.at(p, radius.abs() + 2.0 * h).0);
+                Some(Crossing { t: first.passage(ends, values, -radius)?, triangle: NO_TRIANGLE })
+            }
+        }
+    };
+    let mut contour = contour(lattice, &field, &crossing, &ContourOptions::default(), progress)?;
+    let changed: Vec<usize> =
+        (0..contour.vertices.len()).filter(|&v| contour.vertices[v].triangle == NO_TRIANGLE).collect();
+    let planes: Vec<Plane> =
+        changed.par_iter().map(|&v| tangent(first, -radius, contour.mesh.positions[v], lattice.h)).collect();
+    progress.check()?;
+    for (&v, n) in changed.iter().zip(mesh.triangles.len() as u32..) {
+        contour.vertices[v].triangle = n;
+    }
+    Ok(Offset { contour, planes })
+}
+
+/// Takes the original's own distance where the two agree, so that nothing changes there by the thickness of a chord.
+fn follow(field: &mut Grid<f32>, own: &Grid<f32>) {
+    let bricks = field.bricks.clone();
+    field.values.par_iter_mut().zip(bricks.active()).for_each(|(values, &brick)| {
+        for (n, value) in (0i32..).zip(values.iter_mut()) {
+            let voxel = BRICK * brick + IVec3::new(n & 7, n >> 3 & 7, n >> 6);
+            let before = own.get(voxel);
+            if (*value - before).abs() < UNCHANGED as f32 {
+                *value = before;
+            }
+        }
+    });
+}
+
+/// Which points of a triangle a ball reaches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Reached {
+    /// Points that were tried.
+    pub tried: u32,
+    /// Points that a ball touches from outside.
+    pub touched: u32,
+}
+
+/// For each triangle of `mesh` which of its points (corners, and others about `h` apart) a ball of `radius` (model units)
+/// touches from outside without meeting the solid elsewhere; from inside for a negative radius (Bærentzen §5.2: the
+/// offset point has to be at that distance).
+pub fn reached(
+    body: &Body<'_>,
+    mesh: &TriMesh,
+    radius: f64,
+    h: f64,
+    progress: &Progress,
+) -> Result<Vec<Reached>, Stopped> {
+    let of = |t: usize| {
+        if t % 1024 == 0 {
+            progress.check()?;
+        }
+        let corners = mesh.corners(t);
+        let normal = Plane::through(corners).normal;
+        let touches = |p: &DVec3| {
+            let far =
+                body.distance().within(*p + normal * radius, radius.abs()).map_or(radius.abs(), |n| n.signed.abs());
+            far >= radius.abs() - TOUCHING * h
+        };
+        let points = samples(corners, h);
+        let touched = points.iter().filter(|p| touches(p)).count() as u32;
+        Ok(Reached { tried: points.len() as u32, touched })
+    };
+    (0..mesh.triangles.len()).into_par_iter().map(of).collect()
+}
+
+/// Points of a triangle about `spacing` apart, its corners among them.
+fn samples([a, b, c]: [DVec3; 3], spacing: f64) -> Vec<DVec3> {
+    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    let steps = ((longest / spacing).ceil() as usize).clamp(1, MOST_SAMPLES);
+    let share = |k: usize| k as f64 / steps as f64;
+    (0..=steps)
+        .flat_map(|i| (0..=steps - i).map(move |j| (i, j)))
+        .map(|(i, j)| a + (b - a) * share(i) + (c - a) * share(j))
+        .collect()
+}

@@ -1,0 +1,172 @@
+//! Dilate, erode, close and open.
+
+use serde::Serialize;
+
+use super::{Error, Options, Outcome, TriangleSource, boolean, refine, stages};
+use crate::fit::{Facets, FitOptions, FitReport, Surface, fit};
+use crate::lattice::Lattice;
+use crate::ldi::{Evidence, Expression};
+use crate::mesh::{TriMesh, ValidateOptions, validate};
+use crate::morphology::{Body, MorphologyError, Offset, Operation, closed, offset, reached};
+use crate::progress::Progress;
+
+/// Options of [`morphology`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct MorphologyOptions {
+    /// What is done.
+    pub operation: Operation,
+    /// The radius of the ball, model units, more than 0.
+    pub radius: f64,
+    /// Dilate and erode: edges that would become round stay sharp up to this many times the radius from where they were;
+    /// `None`: round.
+    pub mitre: Option<f64>,
+    /// How the operand becomes a solid first, and the voxel size.
+    pub solid: Options,
+}
+
+/// What was done to the solid.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MorphologyReport {
+    /// What was done.
+    pub operation: Operation,
+    /// The radius, model units.
+    pub radius: f64,
+    /// Volume of the solid before, cubic model units.
+    pub volume_before: f64,
+    /// Volume after.
+    pub volume_after: f64,
+    /// Triangles of the result that the operation made; the others lie on the solid's own.
+    pub made: usize,
+}
+
+/// Repairs `input` and dilates, erodes, closes or opens the solid.
+///
+/// # Errors
+/// Those of [`boolean`]; [`Error::NothingEnclosed`] when nothing is left; [`Error::VoxelSize`] for a radius that
+/// the lattice cannot hold.
+pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progress) -> Result<Outcome, Error> {
+    let radius = options.radius;
+    let outcome = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
+    if !(radius > 0.0 && radius.is_finite()) {
+        return Err(Error::VoxelSize {
+            reason: format!("a radius of {radius} cannot be used; it must be a positive length"),
+        });
+    }
+    let mut stages = stages::Stages::new(progress);
+    let run = Run { solid: &outcome.mesh, h: outcome.lattice.h, options, progress };
+    let made = match options.operation {
+        Operation::Dilate => run.one_way(radius, &mut stages)?,
+        Operation::Erode => run.one_way(-radius, &mut stages)?,
+        Operation::Close => run.there_and_back(radius, &mut stages)?,
+        Operation::Open => run.there_and_back(-radius, &mut stages)?,
+    };
+    Ok(run.finish(&outcome, made, stages))
+}
+
+/// The fitted surface and, for each of its triangles, the solid's triangle that it lies on.
+struct Made {
+    surface: Surface,
+    own: Vec<Option<u32>>,
+    fit: Option<FitReport>,
+}
+
+struct Run<'a> {
+    solid: &'a TriMesh,
+    h: f64,
+    options: &'a MorphologyOptions,
+    progress: &'a Progress,
+}
+
+impl Run<'_> {
+    fn one_way(&self, level: f64, stages: &mut stages::Stages<'_>) -> Result<Made, Error> {
+        stages.begin("offset")?;
+        let body = Body::new(self.solid, self.options.mitre);
+        let offset =
+            offset(&body, level, &self.lattice(level.max(0.0) * self.options.mitre.unwrap_or(1.0))?, self.progress)
+                .map_err(|e| self.error(e))?;
+        stages.begin("fit")?;
+        self.fitted(offset, &TriMesh::default(), Evidence::default(), self.options.solid.fit, level)
+    }
+
+    fn there_and_back(&self, radius: f64, stages: &mut stages::Stages<'_>) -> Result<Made, Error> {
+        stages.begin("first offset")?;
+        let body = Body::new(self.solid, None);
+        let there = offset(&body, radius, &self.lattice(radius.max(0.0))?, self.progress).map_err(|e| self.error(e))?;
+        // All triangles stay: the second distance is to this surface.
+        let whole = FitOptions { tolerance: 0.0, ..self.options.solid.fit.unwrap_or_default() };
+        let first = self.fitted(there, &TriMesh::default(), Evidence::default(), Some(whole), radius)?.surface;
+        stages.begin("second offset")?;
+        let first_body = Body::new(&first.mesh, None);
+        let lattice = self.lattice(0.0)?;
+        let meshes = (self.solid, &first.mesh);
+        let back = closed(&body, &first_body, meshes, radius, &lattice, self.progress).map_err(|e| self.error(e))?;
+        let reached = reached(&body, self.solid, radius, self.h, self.progress)?;
+        stages.begin("fit")?;
+        let evidence = Evidence::of_samples(reached.iter().map(|r| (r.tried, r.touched)));
+        self.fitted(back, self.solid, evidence, self.options.solid.fit, -radius)
+    }
+
+    /// The lattice for the solid grown by `room`, model units.
+    fn lattice(&self, room: f64) -> Result<Lattice, Error> {
+        let mut bounds = super::prepare::bounds(std::slice::from_ref(self.solid))?;
+        (bounds.min, bounds.max) = (bounds.min - room, bounds.max + room);
+        super::prepare::lattice(&bounds, super::VoxelSize::Length(self.h))
+    }
+
+    fn fitted(
+        &self,
+        offset: Offset,
+        source: &TriMesh,
+        evidence: Evidence,
+        options: Option<FitOptions>,
+        level: f64,
+    ) -> Result<Made, Error> {
+        if offset.contour.mesh.triangles.is_empty() {
+            let reason = if level < 0.0 && self.options.operation != Operation::Close {
+                format!("nothing is left: the solid is nowhere thicker than {}", 2.0 * level.abs())
+            } else {
+                "nothing is left".into()
+            };
+            return Err(Error::NothingEnclosed { reason });
+        }
+        let lattice = self.lattice(level.max(0.0))?;
+        let facets = Facets::new(source, offset.planes);
+        let mut surface = refine::merged(offset.contour, &facets, &lattice, &self.options.solid, self.progress)?;
+        let mut fitted = None;
+        if let Some(options) = options {
+            let options = FitOptions { keep: options.keep && !source.triangles.is_empty(), ..options };
+            let (fit, report) = fit(&surface, &facets, &evidence, self.h, &options, self.progress)?;
+            (surface, fitted) = (fit, Some(report));
+        }
+        let own = |t: u32| surface.facet(&facets, t).filter(|&facet| (facet as usize) < source.triangles.len());
+        let own = (0..surface.mesh.triangles.len() as u32).map(own).collect();
+        Ok(Made { surface, own, fit: fitted })
+    }
+
+    fn finish(&self, solid: &Outcome, made: Made, stages: stages::Stages<'_>) -> Outcome {
+        let Made { surface, own, fit } = made;
+        let source = |own: &Option<u32>| own.map_or(TriangleSource::Closed, |t| solid.sources[t as usize]);
+        let sources: Vec<TriangleSource> = own.iter().map(source).collect();
+        let quick = ValidateOptions { self_intersections: false, weld: false };
+        let volume = |mesh: &TriMesh| validate(mesh, &quick, &Progress::none()).map_or(0.0, |validity| validity.volume);
+        let mut report = solid.report.clone();
+        report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
+        report.morphology = Some(MorphologyReport {
+            operation: self.options.operation,
+            radius: self.options.radius,
+            volume_before: volume(self.solid),
+            volume_after: volume(&surface.mesh),
+            made: own.iter().filter(|own| own.is_none()).count(),
+        });
+        report.fit = fit;
+        report.stages.extend(stages.finish());
+        Outcome { mesh: surface.mesh, sources, lattice: solid.lattice, report }
+    }
+
+    fn error(&self, error: MorphologyError) -> Error {
+        match error {
+            MorphologyError::Stopped(stopped) => stopped.into(),
+            MorphologyError::Distance(error) => Error::VoxelSize { reason: error.to_string() },
+        }
+    }
+}
