@@ -113,8 +113,8 @@ pub fn exact(
     progress: &Progress,
 ) -> Result<Grid<f32>, ExactError> {
     let bounds = mesh.bounds().ok_or(ExactError::Empty)?;
-    let possible = lattice.dims.min_element() >= 1 && lattice.dims.max_element() <= MOST_VOXELS;
-    if !possible || !(lattice.h > 0.0 && lattice.h.is_finite()) {
+    let countable = lattice.dims.min_element() >= 1 && lattice.dims.max_element() <= MOST_VOXELS;
+    if !(countable && lattice.h > 0.0 && lattice.h.is_finite()) {
         return Err(ExactError::Lattice { dims: lattice.dims, h: lattice.h });
     }
     let scope = scope(lattice, options.band, &bounds)?;
