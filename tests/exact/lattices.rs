@@ -124,6 +124,20 @@ fn threads_do_not_change_a_bit() {
 }
 
 #[test]
+fn a_vast_lattice_costs_no_more_than_the_band() {
+    let mesh = ball(2, |_| 1.0);
+    let h = 0.05;
+    let vast = Lattice { origin: DVec3::splat(-12_000.0 * h), h, dims: IVec3::splat(24_000) };
+    let grid = field(&mesh, &vast, Band::Within(3.0));
+    let near = lattice(&mesh, h, 6);
+    assert!(grid.bricks.len() <= 2 * field(&mesh, &near, Band::Within(3.0)).bricks.len());
+    assert_eq!((grid.get(IVec3::splat(12_000)), grid.get(IVec3::splat(11_000))), (-3.0, 3.0));
+    let at = IVec3::new(12_000 + 19, 12_000, 12_000);
+    let truth = ExactDistance::of(&mesh, PointSign::Pseudonormal).at(vast.to_model(at.as_dvec3())).expect("triangles");
+    assert!((f64::from(grid.get(at)) - truth.signed / h).abs() < 1e-4, "{}", grid.get(at));
+}
+
+#[test]
 fn costs_are_foretold() {
     for (name, mesh) in closed() {
         for (resolution, width) in [(40.0, 2.0), (40.0, 12.0), (100.0, 3.0)] {
@@ -153,6 +167,8 @@ fn what_cannot_be_is_refused() {
     assert!(matches!(ask(&mesh, &around, Band::Within(f64::NAN), None), Err(ExactError::Band(_))));
     let none = Lattice { dims: IVec3::new(3, 0, 3), ..around };
     assert!(matches!(ask(&mesh, &none, band, None), Err(ExactError::Lattice { .. })));
+    let wide = Lattice { dims: IVec3::new(3, 3, i32::MAX), ..around };
+    assert!(matches!(ask(&mesh, &wide, band, None), Err(ExactError::Lattice { .. })));
     let needed = cost(&mesh, &around, band).memory;
     assert_eq!(ask(&mesh, &around, band, Some(needed)), Ok(()));
     let refused = Err(ExactError::Memory { needed, allowed: needed - 1 });

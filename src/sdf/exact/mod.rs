@@ -31,6 +31,9 @@ use descend::Filled;
 use feature::Features;
 use tiles::Scope;
 
+/// Voxels along an axis, at most.
+const MOST_VOXELS: i32 = 1 << 15;
+
 /// How far from the surface the field is filled.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Band {
@@ -69,8 +72,8 @@ pub enum ExactError {
     /// The mesh has no triangles.
     #[error("a mesh without triangles has no distance")]
     Empty,
-    /// The lattice has no voxels, or its spacing is not a positive number.
-    #[error("a lattice of {dims} voxels of {h} cannot be filled")]
+    /// The lattice has no voxels, or more than 2¹⁵ along an axis, or its spacing is not a positive number.
+    #[error("a lattice of {dims} voxels of {h} cannot be filled: 1 to {MOST_VOXELS} along each axis are possible")]
     Lattice {
         /// Voxels along x, y, z.
         dims: IVec3,
@@ -110,7 +113,8 @@ pub fn exact(
     progress: &Progress,
 ) -> Result<Grid<f32>, ExactError> {
     let bounds = mesh.bounds().ok_or(ExactError::Empty)?;
-    if lattice.dims.min_element() < 1 || !(lattice.h > 0.0 && lattice.h.is_finite()) {
+    let countable = lattice.dims.min_element() >= 1 && lattice.dims.max_element() <= MOST_VOXELS;
+    if !(countable && lattice.h > 0.0 && lattice.h.is_finite()) {
         return Err(ExactError::Lattice { dims: lattice.dims, h: lattice.h });
     }
     let scope = scope(lattice, options.band, &bounds)?;
@@ -130,10 +134,11 @@ pub fn exact(
 /// The voxels of the bricks that meet the lattice, and a finite band.
 fn scope(lattice: &Lattice, band: Band, bounds: &Bounds) -> Result<Scope, ExactError> {
     let end = (brick_of(lattice.dims - 1) + 1) * BRICK;
+    let farthest = farthest(lattice, bounds, end);
     let band = match band {
-        Band::Within(h) if h > 0.0 && h.is_finite() => h.max(1.0),
+        Band::Within(h) if h > 0.0 && h.is_finite() => h.max(1.0).min(farthest),
         Band::Within(h) => return Err(ExactError::Band(h)),
-        Band::Full => farthest(lattice, bounds, end),
+        Band::Full => farthest,
     };
     Ok(Scope { end, band })
 }

@@ -34,15 +34,13 @@ pub(super) fn settle(
             let (bricks, band) = (raw.grid.bricks.clone(), raw.band);
             let all = raw.grid.values.par_iter_mut().zip(bricks.active());
             all.for_each(|(values, &brick)| by_votes(values, votes, brick, band));
-            settle_rest(raw, |brick, values| match votes.bricks.slot(brick) {
-                Slot::Active(_) => {
+            settle_rest(raw, |brick, values| {
+                let slot = votes.bricks.slot(brick);
+                if let Slot::Active(_) = slot {
                     by_votes(values, votes, brick, band);
-                    Ok(())
+                    return Ok(None);
                 }
-                class => {
-                    values.fill(if class == Slot::Inside { -band } else { band });
-                    Ok(())
-                }
+                Ok(Some(slot == Slot::Inside))
             })?;
         }
         Sign::Winding(winding, expression) => {
@@ -54,11 +52,11 @@ pub(super) fn settle(
             })?;
             settle_rest(raw, |brick, values| {
                 progress.check()?;
-                match corners(winding, expression, brick)? {
-                    Some(inside) => values.fill(if inside { -band } else { band }),
-                    None => by_winding(values, winding, expression, brick, band)?,
+                let side = corners(winding, expression, brick)?;
+                if side.is_none() {
+                    by_winding(values, winding, expression, brick, band)?;
                 }
-                Ok(())
+                Ok(side)
             })?;
         }
     }
@@ -208,23 +206,29 @@ fn corners(winding: &Winding<'_>, expression: &Expression, brick: IVec3) -> Resu
     })
 }
 
-/// Lets `fill` set the sides in every brick of the lattice that is not stored. Where all voxels have the same it is the
-/// class of the brick; where what closes a hole passes through the brick, far from any triangle, the brick is stored.
-fn settle_rest(raw: &mut Raw, fill: impl Fn(IVec3, &mut Values) -> Result<(), Stopped> + Sync) -> Result<(), Stopped> {
-    let counts = raw.end / BRICK;
+/// Lets `side` tell the side of every brick of the lattice that is not stored, or set it voxel by voxel. Where all
+/// voxels have the same it is the class of the brick; where what closes a hole passes through the brick, far from any
+/// triangle, the brick is stored.
+fn settle_rest(
+    raw: &mut Raw,
+    side: impl Fn(IVec3, &mut Values) -> Result<Option<bool>, Stopped> + Sync,
+) -> Result<(), Stopped> {
     let (old, band) = (raw.grid.bricks.clone(), raw.band);
-    let settled = |n: i32| {
-        let brick = IVec3::new(n % counts.x, n / counts.x % counts.y, n / (counts.x * counts.y));
+    let [x, y, z] = (raw.end / BRICK).to_array().map(|count| count as usize);
+    let settled = |values: &mut Values, n: usize| {
+        let brick = IVec3::from([n % x, n / x % y, n / (x * y)].map(|k| k as i32));
         if matches!(old.slot(brick), Slot::Active(_)) {
             return Ok(None);
         }
-        let mut values = Box::new([band; BRICK_VOXELS]);
-        fill(brick, &mut values)?;
-        let inside = values.iter().filter(|value| **value < 0.0).count();
-        Ok((inside > 0).then_some((brick, (inside < BRICK_VOXELS).then_some(values))))
+        values.fill(band);
+        let inside = match side(brick, values)? {
+            Some(inside) => usize::from(inside) * BRICK_VOXELS,
+            None => values.iter().filter(|value| **value < 0.0).count(),
+        };
+        Ok((inside > 0).then(|| (brick, (inside < BRICK_VOXELS).then(|| Box::new(*values)))))
     };
-    let rest = (0..counts.element_product()).into_par_iter().map(settled);
-    let rest: Vec<_> = rest.collect::<Result<Vec<_>, Stopped>>()?.into_iter().flatten().collect();
+    let rest = (0..x * y * z).into_par_iter().map_init(|| [0.0; BRICK_VOXELS], settled);
+    let rest: Vec<_> = rest.filter_map(Result::transpose).collect::<Result<_, Stopped>>()?;
     let (mixed, inside): (Vec<_>, Vec<_>) = rest.into_iter().partition(|(_, values)| values.is_some());
     if !mixed.is_empty() {
         let stored = std::mem::take(&mut raw.grid.values).into_iter();

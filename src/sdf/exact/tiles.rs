@@ -13,8 +13,8 @@ const MARGIN: f64 = 1e-3;
 const SLIGHT: f64 = 1e-6;
 /// Features that one task sorts into blocks.
 const CHUNK: usize = 1 << 12;
-/// The largest block, in voxels: more than any lattice.
-const LARGEST: i32 = 1 << 24;
+/// At most so many blocks along an axis to begin with.
+const MOST_BLOCKS: i32 = 128;
 
 /// The lattice in voxels, and the width of the band.
 #[derive(Debug, Clone, Copy)]
@@ -134,7 +134,7 @@ impl Region for Vertex {
 pub(super) fn bricks(features: &Features, scope: &Scope, progress: &Progress) -> Result<Vec<Filled>, Stopped> {
     let longest = scope.end.max_element();
     let mut size = TILE;
-    while size < longest && f64::from(size) < scope.band && size < LARGEST {
+    while size < longest && (f64::from(size) < scope.band || longest / size >= MOST_BLOCKS) {
         size *= 2;
     }
     let grid = Blocks { size, counts: (scope.end + size - 1) / size };
