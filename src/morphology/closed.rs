@@ -14,13 +14,24 @@ use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
 /// Voxels of the field beyond the level.
 const MARGIN: f64 = 2.5;
 
-/// Where the way there and back ends this near to where it began, h, nothing has changed. The first step's surface is
-/// a mesh; where it is round, its chords bring the second step off by h² / 8 r, 0.06 h at r = 2 h.
-const UNCHANGED: f64 = 0.12;
+/// What a closing may fill, h, and be left out: the first step's surface is a mesh, and where it is round, its chords
+/// bring the second step off by h² / 8 r, 0.06 h at r = 2 h.
+const CHORD: f64 = 0.06;
 
-/// A ball of radius r touches a point from outside when it goes into the solid by no more than this, h. At a
-/// concave edge of angle θ that is r θ² / 2, four times what closing fills there.
-const TOUCHING: f64 = 0.2;
+/// A ball touches a point from outside when it goes into the solid by no more than this part of its radius, and no more
+/// than this, h. At a concave edge of angle θ that is r θ² / 2, four times what closing fills there: in the noise of a scan
+/// nearly every triangle has such an edge, and nobody who closes cracks wants them all rounded.
+const TOUCHING: (f64, f64) = (0.25, 1.0);
+
+/// How far a ball of `radius` may go into the solid at a point that it touches, model units.
+fn touching(radius: f64, h: f64) -> f64 {
+    (TOUCHING.0 * radius.abs()).min(TOUCHING.1 * h)
+}
+
+/// Where the way there and back ends this near to where it began, model units, nothing has changed.
+fn unchanged(radius: f64, h: f64) -> f64 {
+    CHORD * h + touching(radius, h) / 4.0
+}
 
 /// Most samples along the edge of a triangle.
 const MOST_SAMPLES: usize = 64;
@@ -47,16 +58,16 @@ pub fn closed(
     let level = (radius / lattice.h) as f32;
     field.values.par_iter_mut().flatten().for_each(|value| *value += level);
     (field.inside, field.outside) = (field.inside + level, field.outside + level);
-    follow(&mut field, &own);
+    follow(&mut field, &own, (unchanged(radius, lattice.h) / lattice.h) as f32);
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
     let crossing = |edge: Edge| {
         let voxels = [edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]];
         let ends = voxels.map(model);
         let at = |t: f64| ends[0].lerp(ends[1], t);
         let h = lattice.h;
-        let unchanged = |t: &f64| (first.at(at(*t), radius.abs() + h).0 + radius).abs() < UNCHANGED * h;
+        let stays = |t: &f64| (first.at(at(*t), radius.abs() + h).0 + radius).abs() < unchanged(radius, h);
         let own = voxels.map(|voxel| f64::from(own.get(voxel)) * h);
-        match original.passage(ends, own, 0.0).filter(unchanged) {
+        match original.passage(ends, own, 0.0).filter(stays) {
             Some(t) => Some(Crossing { t, triangle: original.distance().at(at(t))?.triangle }),
             None => {
                 let values = ends.map(|p| first.at(p, radius.abs() + 2.0 * h).0);
@@ -76,14 +87,14 @@ pub fn closed(
     Ok(Offset { contour, planes })
 }
 
-/// Takes the original's own distance where the two agree, so that nothing changes there by the thickness of a chord.
-fn follow(field: &mut Grid<f32>, own: &Grid<f32>) {
+/// Takes the original's own distance where the two agree, `within` in h.
+fn follow(field: &mut Grid<f32>, own: &Grid<f32>, within: f32) {
     let bricks = field.bricks.clone();
     field.values.par_iter_mut().zip(bricks.active()).for_each(|(values, &brick)| {
         for (n, value) in (0i32..).zip(values.iter_mut()) {
             let voxel = BRICK * brick + IVec3::new(n & 7, n >> 3 & 7, n >> 6);
             let before = own.get(voxel);
-            if (*value - before).abs() < UNCHANGED as f32 {
+            if (*value - before).abs() < within {
                 *value = before;
             }
         }
@@ -118,7 +129,7 @@ pub fn reached(
         let touches = |p: &DVec3| {
             let far =
                 body.distance().within(*p + normal * radius, radius.abs()).map_or(radius.abs(), |n| n.signed.abs());
-            far >= radius.abs() - TOUCHING * h
+            far >= radius.abs() - touching(radius, h)
         };
         let points = samples(corners, h);
         let touched = points.iter().filter(|p| touches(p)).count() as u32;

@@ -27,15 +27,17 @@ use border::Border;
 use choose::Kept;
 use stitch::{Joined, Misfit, joined};
 
-/// Times that triangles are let go. Real meshes take up to 9.
-const MOST_ROUNDS: usize = 32;
+/// Times that triangles are let go. Real meshes take up to 20.
+const MOST_ROUNDS: usize = 48;
 
 /// Rounds after which all of a connected patch is let go when it does not fit.
-const PATIENT_ROUNDS: usize = 24;
+const PATIENT_ROUNDS: usize = 40;
 
-/// How far from a place that does not fit triangles are let go, h, at first, and how much more each time.
+/// How far from a place that does not fit triangles are let go, h, at first, and how much more each time that there was
+/// trouble within [`SAME_PLACE`] before. More everywhere would make new borders, and with them new trouble.
 const REACH: f64 = 1.0;
 const REACH_GROWS: f64 = 0.5;
+const SAME_PLACE: f64 = 3.0;
 
 /// Triangles nearer than this, h, to a place where others meet are let go at once: the crease there wants room. In the
 /// union of fandisk with itself, turned, 97.5 % of the edges come out without, 99 % with.
@@ -52,6 +54,7 @@ pub(super) fn keep(
 ) -> Result<(Surface, usize), Stopped> {
     let mut kept = choose::chosen(facets, evidence, h, progress)?;
     near(&kept, &meeting_places(home, &kept), CLEARANCE * h).into_iter().for_each(|t| kept.is[t as usize] = false);
+    let mut trouble = Trouble::default();
     for round in 0..MOST_ROUNDS {
         progress.check()?;
         kept.tidy();
@@ -66,9 +69,8 @@ pub(super) fn keep(
             },
             Err(misfit) => misfit,
         };
-        let reach = h * (REACH + REACH_GROWS * round as f64);
         let mut gone = misfit.unseen;
-        let near = near(&kept, &misfit.points, reach);
+        let near = trouble.near(&kept, &misfit.points, h);
         if round >= PATIENT_ROUNDS {
             gone.extend(near.iter().map(|&t| border.component[t as usize]));
         }
@@ -136,6 +138,31 @@ fn mended(
     match bad.is_empty() {
         true => Ok(Ok(cut.surface)),
         false => Ok(Err(bad.into_iter().flat_map(corners).collect())),
+    }
+}
+
+/// Where the two did not fit so far.
+#[derive(Default)]
+struct Trouble {
+    /// The points of each round.
+    rounds: Vec<Vec<DVec3>>,
+}
+
+impl Trouble {
+    /// The kept triangles to be let go because of trouble at `points`: the farther from there, the more often there was
+    /// trouble before.
+    fn near(&mut self, kept: &Kept, points: &[DVec3], h: f64) -> Vec<u32> {
+        let close = |p: &DVec3, others: &Vec<DVec3>| others.iter().any(|o| o.distance(*p) < SAME_PLACE * h);
+        let before = |p: &DVec3| self.rounds.iter().filter(|others| close(p, others)).count();
+        let mut by_count: Vec<(usize, DVec3)> = points.par_iter().map(|p| (before(p), *p)).collect();
+        by_count.sort_by_key(|entry| entry.0);
+        let mut all = Vec::new();
+        for group in by_count.chunk_by(|a, b| a.0 == b.0) {
+            let points: Vec<DVec3> = group.iter().map(|entry| entry.1).collect();
+            all.extend(near(kept, &points, h * (REACH + REACH_GROWS * group[0].0 as f64)));
+        }
+        self.rounds.push(points.to_vec());
+        all
     }
 }
 

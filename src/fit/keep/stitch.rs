@@ -190,8 +190,10 @@ fn rings(border: &Border, kept: &Kept, found: &[OnBorder], seam: &[(u32, u32)], 
             Err(points) => wrong.extend(points.iter().map(|&p| found[p as usize].at)),
         }
     }
+    // Where some loops were not matched, others may seem to have none.
+    let others_fit = wrong.is_empty();
     for (n, ring) in (0..).zip(&rings) {
-        if ring.is_none() && wrong.is_empty() {
+        if ring.is_none() && others_fit {
             wrong.extend(border.ring(n).iter().map(|s| at(s.from)));
         }
     }
