@@ -55,7 +55,7 @@ pub(super) fn crease(facets: &Facets<'_>, h: f64, x: &Place, y: &Place) -> Optio
     let found = pairs().filter_map(|(p, q)| between(facets, h, (x.at, p), (y.at, q)));
     let way = |c: &Crease| c.place.at.distance(x.at) + c.place.at.distance(y.at);
     let best = found.min_by(|a, b| b.on_source.cmp(&a.on_source).then(way(a).total_cmp(&way(b))))?;
-    Some(Crease { cosine, ..best })
+    facets.is_wanted(best.place.at, h).then_some(Crease { cosine, ..best })
 }
 
 /// The crease between the smooth pieces of two facets.

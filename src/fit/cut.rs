@@ -173,7 +173,7 @@ fn corner(facets: &Facets<'_>, h: f64, three: [Place; 3]) -> Option<Place> {
         at = nearest(sides.iter().map(|s| facets.plane(s)), middle)?;
     }
     let reach = three.iter().map(|p| p.at.distance(at)).fold(0.0, f64::max);
-    (reach < 2.0 * h && (beyond < 0.05 * h || reach < h)).then_some(Place { at, sides })
+    (reach < 2.0 * h && facets.is_wanted(at, h) && (beyond < 0.05 * h || reach < h)).then_some(Place { at, sides })
 }
 
 /// Cuts a triangle at points on some of its edges (corner k to the next).

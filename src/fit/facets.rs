@@ -95,7 +95,15 @@ pub struct Facets<'a> {
     around: Around,
     /// A number for each triangle, or none: simplification keeps different ones apart.
     classes: Vec<u32>,
+    /// How far a point is from the surface that is wanted, model units, where that is known.
+    wanted: Option<Wanted<'a>>,
 }
+
+/// How far a point (model units) is from the surface that is wanted, model units.
+pub type Wanted<'a> = &'a (dyn Fn(DVec3) -> f64 + Sync);
+
+/// A crease farther than this, h, from the surface that is wanted is none: the planes belong to something round.
+const ASTRAY: f64 = 0.05;
 
 impl<'a> Facets<'a> {
     /// The triangles of `mesh`, and after them `lids`: planes, model units, of surface that has no
@@ -114,13 +122,24 @@ impl<'a> Facets<'a> {
             across[a as usize / 3][a as usize % 3] = (b / 3, turned);
             across[b as usize / 3][b as usize % 3] = (a / 3, turned);
         });
-        Self { mesh, planes, across, around: Around::new(mesh), classes: Vec::new() }
+        Self { mesh, planes, across, around: Around::new(mesh), classes: Vec::new(), wanted: None }
     }
 
     /// With a number for each triangle; simplification keeps apart what has different ones.
     pub fn with_classes(mut self, classes: Vec<u32>) -> Self {
         self.classes = classes;
         self
+    }
+
+    /// With a judge of creases: planes that touch something round meet off it.
+    pub fn with_wanted(mut self, wanted: Wanted<'a>) -> Self {
+        self.wanted = Some(wanted);
+        self
+    }
+
+    /// Whether a point is on the surface that is wanted, as far as is known.
+    pub(super) fn is_wanted(&self, p: DVec3, h: f64) -> bool {
+        self.wanted.is_none_or(|off| off(p) < ASTRAY * h)
     }
 
     /// Whether there are any classes.

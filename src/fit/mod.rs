@@ -24,8 +24,8 @@ mod simplify;
 mod snap;
 mod surface;
 
-pub use facets::{Facets, Side, Sides};
-pub use surface::Surface;
+pub use facets::{Facets, Side, Sides, Wanted};
+pub use surface::{NOT_KEPT, Surface};
 
 use crate::ldi::Evidence;
 use crate::progress::{Progress, Stopped};

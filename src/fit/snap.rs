@@ -68,7 +68,7 @@ fn wish(surface: &Surface, facets: &Facets<'_>, h: f64, fan: &[[u32; 2]]) -> Vec
     for &[_, other] in fan {
         let found = crease(facets, h, &own, &surface.place(other)).filter(|c| c.cosine < SMOOTH);
         let Some(Crease { place: Place { at, sides }, .. }) = found else { continue };
-        let Some(foot) = foot(&sides) else { continue };
+        let Some(foot) = foot(&sides).filter(|&p| facets.is_wanted(p, h)) else { continue };
         let straight = foot.distance(own.at);
         if straight < NEAR_CORNER * h {
             let normal = |s| facets.plane(s).normal;
@@ -84,7 +84,7 @@ fn wish(surface: &Surface, facets: &Facets<'_>, h: f64, fan: &[[u32; 2]]) -> Vec
         }
     }
     if met.iter().count() > 2
-        && let Some(corner) = foot(&met).filter(|c| c.distance(own.at) < NEAR_CORNER * h)
+        && let Some(corner) = foot(&met).filter(|c| c.distance(own.at) < NEAR_CORNER * h && facets.is_wanted(*c, h))
     {
         places.push((-1.0, Place { at: corner, sides: met }));
     }

@@ -121,7 +121,7 @@ pub fn reached(
     progress: &Progress,
 ) -> Result<Vec<Reached>, Stopped> {
     let of = |t: usize| {
-        if t % 1024 == 0 {
+        if t.is_multiple_of(1024) {
             progress.check()?;
         }
         let corners = mesh.corners(t);

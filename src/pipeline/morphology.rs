@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{Error, Options, Outcome, TriangleSource, boolean, refine, stages};
-use crate::fit::{Facets, FitOptions, FitReport, Surface, fit};
+use crate::fit::{Facets, FitOptions, FitReport, Surface, Wanted, fit};
 use crate::lattice::Lattice;
 use crate::ldi::{Evidence, Expression};
 use crate::mesh::{TriMesh, ValidateOptions, validate};
@@ -85,16 +85,18 @@ impl Run<'_> {
             offset(&body, level, &self.lattice(level.max(0.0) * self.options.mitre.unwrap_or(1.0))?, self.progress)
                 .map_err(|e| self.error(e))?;
         stages.begin("fit")?;
-        self.fitted(offset, &TriMesh::default(), Evidence::default(), self.options.solid.fit, level)
+        let off = |p| (body.at(p, level.abs() + self.h).0 - level).abs();
+        self.fitted(offset, (&TriMesh::default(), &off), Evidence::default(), self.options.solid.fit, level)
     }
 
     fn there_and_back(&self, radius: f64, stages: &mut stages::Stages<'_>) -> Result<Made, Error> {
         stages.begin("first offset")?;
         let body = Body::new(self.solid, None);
         let there = offset(&body, radius, &self.lattice(radius.max(0.0))?, self.progress).map_err(|e| self.error(e))?;
+        let off = |p| (body.at(p, radius.abs() + self.h).0 - radius).abs();
         // All triangles stay: the second distance is to this surface.
         let whole = FitOptions { tolerance: 0.0, ..self.options.solid.fit.unwrap_or_default() };
-        let first = self.fitted(there, &TriMesh::default(), Evidence::default(), Some(whole), radius)?.surface;
+        let first = self.fitted(there, (&TriMesh::default(), &off), Evidence::default(), Some(whole), radius)?.surface;
         stages.begin("second offset")?;
         let first_body = Body::new(&first.mesh, None);
         let lattice = self.lattice(0.0)?;
@@ -103,7 +105,11 @@ impl Run<'_> {
         let reached = reached(&body, self.solid, radius, self.h, self.progress)?;
         stages.begin("fit")?;
         let evidence = Evidence::of_samples(reached.iter().map(|r| (r.tried, r.touched)));
-        self.fitted(back, self.solid, evidence, self.options.solid.fit, -radius)
+        let off = |p| {
+            let own = body.at(p, self.h).0.abs();
+            if own < 1e-3 * self.h { own } else { own.min((first_body.at(p, radius.abs() + self.h).0 + radius).abs()) }
+        };
+        self.fitted(back, (self.solid, &off), evidence, self.options.solid.fit, -radius)
     }
 
     /// The lattice for the solid grown by `room`, model units.
@@ -116,7 +122,7 @@ impl Run<'_> {
     fn fitted(
         &self,
         offset: Offset,
-        source: &TriMesh,
+        (source, off): (&TriMesh, Wanted<'_>),
         evidence: Evidence,
         options: Option<FitOptions>,
         level: f64,
@@ -130,7 +136,7 @@ impl Run<'_> {
             return Err(Error::NothingEnclosed { reason });
         }
         let lattice = self.lattice(level.max(0.0))?;
-        let facets = Facets::new(source, offset.planes);
+        let facets = Facets::new(source, offset.planes).with_wanted(off);
         let mut surface = refine::merged(offset.contour, &facets, &lattice, &self.options.solid, self.progress)?;
         let mut fitted = None;
         if let Some(options) = options {

@@ -179,6 +179,33 @@ fn a_stream_carries_the_same_bytes_as_a_file() {
 }
 
 #[test]
+fn morphology_verbs_say_what_they_did_and_refuse_what_cannot_be() {
+    let folder = folder();
+    let run = |verb: &str, flags: &str| {
+        run_in(&folder, &format!("{verb} testdata/open_cube.off -o OUT/out.off --resolution 32 --force {flags}"))
+    };
+    let volume = |verb: &str, flags: &str| {
+        let report = run(verb, &format!("{flags} --json")).exits(0).json();
+        assert_eq!(report["output"]["validity"]["open_edges"], 0);
+        assert_eq!(report["pipeline"]["morphology"]["operation"], verb);
+        report["output"]["validity"]["volume"].as_f64().expect("a volume")
+    };
+    assert!((volume("dilate", "--radius 1 --sharp") - 1728.0).abs() < 0.1);
+    let round = volume("dilate", "--radius 1");
+    assert!((1600.0..1720.0).contains(&round), "{round}");
+    assert!((volume("erode", "-r 1") - 512.0).abs() < 0.1);
+    assert!((volume("close", "-r 4h") - 1000.0).abs() < 0.1);
+    let opened = volume("open", "-r 4h");
+    assert!((950.0..999.0).contains(&opened), "{opened}");
+    let text = run("erode", "--radius 10%").exits(0).stderr;
+    assert!(text.contains("shrunk by 1.732"), "{text}");
+    assert!(run("erode", "--radius 6").exits(4).stderr.contains("nowhere thicker than 12"));
+    run("dilate", "").exits(2);
+    run("dilate", "--radius 1 --sharp=0.5").exits(2);
+    run("open", "--radius 1 --sharp").exits(2);
+}
+
+#[test]
 fn the_map_shows_what_closes_holes_and_the_fit_has_switches() {
     let folder = folder();
     let repair = |flags: &str| {
