@@ -11,8 +11,6 @@ use crate::vote::WindingTree;
 const PACKET: usize = 256;
 /// Growth of the first guess over the distance to the predecessor's triangle, so that rounding excludes nothing.
 const GUESS: f64 = 1.0 + 1e-9;
-/// Two steps towards a crossing that differ by less, as a part of the way, are at it.
-const SAME_PLACE: f64 = 1e-11;
 /// Steps towards one crossing: halving alone ends at the spacing of `f64` numbers.
 const MOST_STEPS: u32 = 200;
 
@@ -96,39 +94,30 @@ impl ExactDistance {
     }
 
     /// Where the signed distance passes `level` (model units) on the way from `from` to `to` (model
-    /// units): 0 at `from`, 1 at `to`, to about 1e-11 of the way. `None` where both ends are on the same side
+    /// units): 0 at `from`, 1 at `to`, to about 1e-14 of the way. `None` where both ends are on the same side
     /// of the level, or the mesh is empty. Of several passages one is found.
     pub fn crossing(&self, from: DVec3, to: DVec3, level: f64) -> Option<f64> {
-        passage(|t| self.at(from.lerp(to, t)).map(|nearest| nearest.signed - level))
+        let value = |t: f64| self.at(from.lerp(to, t)).map(|nearest| nearest.signed - level);
+        let (mut low, mut high) = ((0.0, value(0.0)?), (1.0, value(1.0)?));
+        if (low.1 < 0.0) == (high.1 < 0.0) {
+            return None;
+        }
+        // Regula falsi with the Illinois rule: the end that stays counts half, so that both ends move.
+        for _ in 0..MOST_STEPS {
+            let t = low.0 + (high.0 - low.0) * (low.1 / (low.1 - high.1));
+            if !(t > low.0 && t < high.0) || high.0 - low.0 < 1e-15 {
+                return Some(t.clamp(low.0, high.0));
+            }
+            let at = value(t)?;
+            if at == 0.0 {
+                return Some(t);
+            }
+            if (at < 0.0) == (low.1 < 0.0) {
+                (low, high.1) = ((t, at), high.1 / 2.0);
+            } else {
+                (high, low.1) = ((t, at), low.1 / 2.0);
+            }
+        }
+        Some((low.0 + high.0) / 2.0)
     }
-}
-
-/// Where `value` changes its sign between 0 and 1; `None` where it does not.
-fn passage(value: impl Fn(f64) -> Option<f64>) -> Option<f64> {
-    let (mut low, mut high) = ((0.0, value(0.0)?), (1.0, value(1.0)?));
-    if (low.1 < 0.0) == (high.1 < 0.0) {
-        return None;
-    }
-    // Regula falsi with the Illinois rule: the end that stays counts half, so that both ends move.
-    let mut last = f64::NAN;
-    for _ in 0..MOST_STEPS {
-        let t = low.0 + (high.0 - low.0) * (low.1 / (low.1 - high.1));
-        if !(t > low.0 && t < high.0) || high.0 - low.0 < 1e-15 {
-            return Some(t.clamp(low.0, high.0));
-        }
-        if (t - last).abs() < SAME_PLACE {
-            return Some(t);
-        }
-        last = t;
-        let at = value(t)?;
-        if at == 0.0 {
-            return Some(t);
-        }
-        if (at < 0.0) == (low.1 < 0.0) {
-            (low, high.1) = ((t, at), high.1 / 2.0);
-        } else {
-            (high, low.1) = ((t, at), low.1 / 2.0);
-        }
-    }
-    Some((low.0 + high.0) / 2.0)
 }
