@@ -11,7 +11,7 @@ use super::FitOptions;
 use super::facets::Facets;
 use super::quadric::Quadric;
 use super::surface::{Surface, agreement, shape};
-use crate::mesh::{HalfEdges, TriMesh, ValidateOptions, intersecting_triangles, validate};
+use crate::mesh::{HalfEdges, Shape, TriMesh, ValidateOptions, intersecting_triangles, validate};
 use crate::progress::{Progress, Stopped};
 
 /// By how much a triangle may turn away from the facets of its corners (one minus the cosine,
@@ -93,15 +93,19 @@ fn is_solid(mesh: &TriMesh, self_intersections: bool, progress: &Progress) -> Re
     Ok(validity.is_valid())
 }
 
-/// Freezes the vertices within `reach` of the boxes of triangles `bad` of the simplified surface.
+/// Freezes the vertices within `reach` of the triangles `bad` of the simplified surface.
 fn freeze(frozen: &mut [bool], surface: &Surface, simple: &Surface, bad: &[u32], reach: f64) {
     let around = |&t: &u32| {
-        let [a, b, c] = simple.mesh.corners(t as usize);
-        (a.min(b).min(c) - reach, a.max(b).max(c) + reach)
+        let corners = simple.mesh.corners(t as usize);
+        let bounds = corners.bounds();
+        (bounds.min - reach, bounds.max + reach, corners)
     };
-    let boxes: Vec<(DVec3, DVec3)> = bad.iter().map(around).collect();
+    let boxes: Vec<(DVec3, DVec3, [DVec3; 3])> = bad.iter().map(around).collect();
+    let is_near = |p: DVec3, (low, high, corners): &(DVec3, DVec3, [DVec3; 3])| {
+        p.cmpge(*low).all() && p.cmple(*high).all() && corners.nearest(p).0.distance(p) <= reach
+    };
     frozen.par_iter_mut().zip(&surface.mesh.positions).for_each(|(frozen, p)| {
-        *frozen |= boxes.iter().any(|(low, high)| p.cmpge(*low).all() && p.cmple(*high).all());
+        *frozen |= boxes.iter().any(|one| is_near(*p, one));
     });
 }
 
