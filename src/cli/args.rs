@@ -343,7 +343,7 @@ pub struct SolidArgs {
     /// Build the whole surface anew from the voxels, also where the input is right as it is
     #[arg(long, conflicts_with = "no_fit")]
     pub rebuild: bool,
-    /// How far flat parts may move while triangles are saved, or `off` to keep all [default: 0.003h]
+    /// How far flat parts may move while triangles are saved, or `off` to keep all [default: 0.002h]
     #[arg(long, value_name = "LEN|off", conflicts_with = "no_fit")]
     pub simplify: Option<Simplify>,
     /// Write the result, coloured by what is original (grey) and what was made up (red), to this file

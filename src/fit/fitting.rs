@@ -201,10 +201,7 @@ fn straddling(surface: &Surface, facets: &Facets<'_>) -> Vec<[u32; 2]> {
                 y.iter().all(|q| p.dot(facets.plane(q).normal) < FLAT)
             })
     };
-    let edges = surface.mesh.triangles.par_iter().flat_map_iter(|&t| {
-        [0, 1, 2].into_iter().map(move |k| [t[k], t[(k + 1) % 3]]).filter(|[a, b]| a < b && differ(*a, *b))
-    });
-    edges.collect()
+    surface.edges().filter(|&[a, b]| differ(a, b)).collect()
 }
 
 /// The points at which edges are to be cut.

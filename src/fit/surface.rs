@@ -1,6 +1,7 @@
 //! A surface that knows what its vertices lie on.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::crease::{Place, SMOOTH};
 use super::facets::{Facets, Side, Sides};
@@ -54,6 +55,12 @@ impl Surface {
 
     pub(super) fn place(&self, vertex: u32) -> Place {
         Place { at: self.at(vertex), sides: self.sides[vertex as usize] }
+    }
+
+    /// The edges, each once, smaller vertex first; the surface must be closed.
+    pub(super) fn edges(&self) -> impl ParallelIterator<Item = [u32; 2]> + '_ {
+        let halves = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
+        self.mesh.triangles.par_iter().flat_map_iter(move |t| halves(t).into_iter().filter(|[a, b]| a < b))
     }
 
     /// Whether all corners are the source's, so that the triangle is not the fit's business.

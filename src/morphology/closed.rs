@@ -3,16 +3,13 @@
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-use super::offset::tangent;
+use super::offset::{MARGIN, shift, tangent};
 use super::{Body, MorphologyError, Offset};
 use crate::contour::{ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
 use crate::lattice::{BRICK, Grid, Lattice};
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
-
-/// Voxels of the field beyond the level.
-const MARGIN: f64 = 2.5;
 
 /// What a closing may fill, h, and be left out: the first step's surface is a mesh, and where it is round, its chords
 /// bring the second step off by h² / 8 r, 0.06 h at r = 2 h.
@@ -45,7 +42,6 @@ const MOST_SAMPLES: usize = 64;
 pub fn closed(
     original: &Body<'_>,
     first: &Body<'_>,
-    (mesh, first_mesh): (&TriMesh, &TriMesh),
     radius: f64,
     lattice: &Lattice,
     progress: &Progress,
@@ -53,11 +49,9 @@ pub fn closed(
     let near = |mesh: &TriMesh, band: f64| {
         exact(mesh, lattice, Sign::Pseudonormal, &ExactOptions { band: Band::Within(band), max_memory: None }, progress)
     };
-    let mut field = near(first_mesh, radius.abs() / lattice.h + MARGIN)?;
-    let own = near(mesh, MARGIN)?;
-    let level = (radius / lattice.h) as f32;
-    field.values.par_iter_mut().flatten().for_each(|value| *value += level);
-    (field.inside, field.outside) = (field.inside + level, field.outside + level);
+    let mut field = near(first.mesh, radius.abs() / lattice.h + MARGIN)?;
+    let own = near(original.mesh, MARGIN)?;
+    shift(&mut field, (radius / lattice.h) as f32);
     follow(&mut field, &own, (unchanged(radius, lattice.h) / lattice.h) as f32);
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
     let crossing = |edge: Edge| {
@@ -81,7 +75,7 @@ pub fn closed(
     let planes: Vec<Plane> =
         changed.par_iter().map(|&v| tangent(first, -radius, contour.mesh.positions[v], lattice.h)).collect();
     progress.check()?;
-    for (&v, n) in changed.iter().zip(mesh.triangles.len() as u32..) {
+    for (&v, n) in changed.iter().zip(original.mesh.triangles.len() as u32..) {
         contour.vertices[v].triangle = n;
     }
     Ok(Offset { contour, planes })
@@ -110,21 +104,15 @@ pub struct Reached {
     pub touched: u32,
 }
 
-/// For each triangle of `mesh` which of its points (corners, and others about `h` apart) a ball of `radius` (model units)
+/// For each triangle of `body` which of its points (corners, and others about `h` apart) a ball of `radius` (model units)
 /// touches from outside without meeting the solid elsewhere; from inside for a negative radius (Bærentzen §5.2: the
 /// offset point has to be at that distance).
-pub fn reached(
-    body: &Body<'_>,
-    mesh: &TriMesh,
-    radius: f64,
-    h: f64,
-    progress: &Progress,
-) -> Result<Vec<Reached>, Stopped> {
+pub fn reached(body: &Body<'_>, radius: f64, h: f64, progress: &Progress) -> Result<Vec<Reached>, Stopped> {
     let of = |t: usize| {
         if t.is_multiple_of(1024) {
             progress.check()?;
         }
-        let corners = mesh.corners(t);
+        let corners = body.mesh.corners(t);
         let normal = Plane::through(corners).normal;
         let touches = |p: &DVec3| {
             let far =
@@ -135,7 +123,7 @@ pub fn reached(
         let touched = points.iter().filter(|p| touches(p)).count() as u32;
         Ok(Reached { tried: points.len() as u32, touched })
     };
-    (0..mesh.triangles.len()).into_par_iter().map(of).collect()
+    (0..body.mesh.triangles.len()).into_par_iter().map(of).collect()
 }
 
 /// Points of a triangle about `spacing` apart, its corners among them.

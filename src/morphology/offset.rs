@@ -12,7 +12,7 @@ use crate::progress::Progress;
 use crate::sdf::exact::{Band, ExactDistance, ExactOptions, Nearest, PointSign, Sign, exact};
 
 /// Voxels of the field beyond the level.
-const MARGIN: f64 = 2.5;
+pub(super) const MARGIN: f64 = 2.5;
 
 /// A point whose value is nearer to the level than this, h, is at it.
 const AT_LEVEL: f64 = 1e-7;
@@ -25,7 +25,7 @@ const LIKELY: f64 = 1.001;
 
 /// A solid that can be asked for its distance, or for the distance that keeps its edges sharp.
 pub struct Body<'a> {
-    mesh: &'a TriMesh,
+    pub(super) mesh: &'a TriMesh,
     distance: ExactDistance,
     around: Around,
     /// How many times the offset a sharp edge may reach, at most; `None`: edges become round.
@@ -159,8 +159,12 @@ fn field(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) ->
         });
         progress.check()?;
     }
-    let level = level_h as f32;
-    grid.values.par_iter_mut().flatten().for_each(|value| *value -= level);
-    (grid.inside, grid.outside) = (grid.inside - level, grid.outside - level);
+    shift(&mut grid, -level_h as f32);
     Ok(grid)
+}
+
+/// Adds `by` to all values, so that another level of the field is where it is zero.
+pub(super) fn shift(grid: &mut Grid<f32>, by: f32) {
+    grid.values.par_iter_mut().flatten().for_each(|value| *value += by);
+    (grid.inside, grid.outside) = (grid.inside + by, grid.outside + by);
 }

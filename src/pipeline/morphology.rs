@@ -46,12 +46,12 @@ pub struct MorphologyReport {
 /// the lattice cannot hold.
 pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progress) -> Result<Outcome, Error> {
     let radius = options.radius;
-    let outcome = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     if !(radius > 0.0 && radius.is_finite()) {
         return Err(Error::VoxelSize {
             reason: format!("a radius of {radius} cannot be used; it must be a positive length"),
         });
     }
+    let outcome = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let mut stages = stages::Stages::new(progress);
     let run = Run { solid: &outcome.mesh, h: outcome.lattice.h, options, progress };
     let made = match options.operation {
@@ -81,35 +81,36 @@ impl Run<'_> {
     fn one_way(&self, level: f64, stages: &mut stages::Stages<'_>) -> Result<Made, Error> {
         stages.begin("offset")?;
         let body = Body::new(self.solid, self.options.mitre);
-        let offset =
-            offset(&body, level, &self.lattice(level.max(0.0) * self.options.mitre.unwrap_or(1.0))?, self.progress)
-                .map_err(|e| self.error(e))?;
+        let lattice = self.lattice(level.max(0.0) * self.options.mitre.unwrap_or(1.0))?;
+        let offset = offset(&body, level, &lattice, self.progress).map_err(|e| self.error(e))?;
         stages.begin("fit")?;
         let off = |p| (body.at(p, level.abs() + self.h).0 - level).abs();
-        self.fitted(offset, (&TriMesh::default(), &off), Evidence::default(), self.options.solid.fit, level)
+        self.fitted((offset, &lattice), (&TriMesh::default(), &off), Evidence::default(), self.options.solid.fit, level)
     }
 
     fn there_and_back(&self, radius: f64, stages: &mut stages::Stages<'_>) -> Result<Made, Error> {
         stages.begin("first offset")?;
         let body = Body::new(self.solid, None);
-        let there = offset(&body, radius, &self.lattice(radius.max(0.0))?, self.progress).map_err(|e| self.error(e))?;
+        let lattice = self.lattice(radius.max(0.0))?;
+        let there = offset(&body, radius, &lattice, self.progress).map_err(|e| self.error(e))?;
         let off = |p| (body.at(p, radius.abs() + self.h).0 - radius).abs();
         // All triangles stay: the second distance is to this surface.
         let whole = FitOptions { tolerance: 0.0, ..self.options.solid.fit.unwrap_or_default() };
-        let first = self.fitted(there, (&TriMesh::default(), &off), Evidence::default(), Some(whole), radius)?.surface;
+        let first = self
+            .fitted((there, &lattice), (&TriMesh::default(), &off), Evidence::default(), Some(whole), radius)?
+            .surface;
         stages.begin("second offset")?;
         let first_body = Body::new(&first.mesh, None);
         let lattice = self.lattice(0.0)?;
-        let meshes = (self.solid, &first.mesh);
-        let back = closed(&body, &first_body, meshes, radius, &lattice, self.progress).map_err(|e| self.error(e))?;
-        let reached = reached(&body, self.solid, radius, self.h, self.progress)?;
+        let back = closed(&body, &first_body, radius, &lattice, self.progress).map_err(|e| self.error(e))?;
+        let reached = reached(&body, radius, self.h, self.progress)?;
         stages.begin("fit")?;
         let evidence = Evidence::of_samples(reached.iter().map(|r| (r.tried, r.touched)));
         let off = |p| {
             let own = body.at(p, self.h).0.abs();
             if own < 1e-3 * self.h { own } else { own.min((first_body.at(p, radius.abs() + self.h).0 + radius).abs()) }
         };
-        self.fitted(back, (self.solid, &off), evidence, self.options.solid.fit, -radius)
+        self.fitted((back, &lattice), (self.solid, &off), evidence, self.options.solid.fit, -radius)
     }
 
     /// The lattice for the solid grown by `room`, model units.
@@ -121,7 +122,7 @@ impl Run<'_> {
 
     fn fitted(
         &self,
-        offset: Offset,
+        (offset, lattice): (Offset, &Lattice),
         (source, off): (&TriMesh, Wanted<'_>),
         evidence: Evidence,
         options: Option<FitOptions>,
@@ -135,9 +136,8 @@ impl Run<'_> {
             };
             return Err(Error::NothingEnclosed { reason });
         }
-        let lattice = self.lattice(level.max(0.0))?;
         let facets = Facets::new(source, offset.planes).with_wanted(off);
-        let mut surface = refine::merged(offset.contour, &facets, &lattice, &self.options.solid, self.progress)?;
+        let mut surface = refine::merged(offset.contour, &facets, lattice, &self.options.solid, self.progress)?;
         let mut fitted = None;
         if let Some(options) = options {
             let options = FitOptions { keep: options.keep && !source.triangles.is_empty(), ..options };

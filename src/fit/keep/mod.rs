@@ -93,12 +93,7 @@ fn meeting_places(home: &Surface, kept: &Kept) -> Vec<DVec3> {
         let (a, b) = (kept.mesh.triangles[a], kept.mesh.triangles[b]);
         a.iter().all(|v| !b.contains(v))
     };
-    let edges = home
-        .mesh
-        .triangles
-        .par_iter()
-        .flat_map_iter(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]].into_iter().filter(|[a, b]| a < b));
-    let crossing = edges.filter(|&[a, b]| {
+    let crossing = home.edges().filter(|&[a, b]| {
         let (a, b) = (meets(a), meets(b));
         !a.is_empty() && a.iter().all(|&p| b.iter().any(|&q| apart(p, q)))
     });

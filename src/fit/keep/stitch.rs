@@ -66,7 +66,7 @@ pub(super) fn joined(
     let seam = seam(&cut.surface.mesh.triangles, &others, first, found.len());
     let rings = rings(border, kept, &found, &seam, h)?;
     let joint = Joint { home, facets, kept, border, cut: &cut, first, found: &found, rings: &rings };
-    Ok(joint.assemble(&others, &seam))
+    Ok(joint.assemble(&others))
 }
 
 /// The component whose kept triangles a vertex lies on, or [`NONE`].
@@ -119,11 +119,7 @@ fn crossings(
     labels: &[u32],
     h: f64,
 ) -> Result<Vec<([u32; 2], OnBorder)>, Misfit> {
-    let edges = home.mesh.triangles.par_iter().flat_map_iter(|t| {
-        [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]
-            .into_iter()
-            .filter(|[a, b]| a < b && labels[*a as usize] != labels[*b as usize])
-    });
+    let edges = home.edges().filter(|[a, b]| labels[*a as usize] != labels[*b as usize]);
     let found = edges.map(|edge| {
         let [a, b] = edge.map(|v| home.at(v));
         let ends = edge.map(|v| labels[v as usize]);
@@ -150,16 +146,15 @@ fn crossings(
     Ok(fine)
 }
 
-/// For each point of the cut, the next one in the direction of the border, and the triangle of the contour that has
-/// the edge between the two.
-fn seam(triangles: &[[u32; 3]], others: &[u32], first: u32, count: usize) -> Vec<(u32, u32)> {
-    let mut next = vec![(NONE, NONE); count];
+/// For each point of the cut, the next one in the direction of the border.
+fn seam(triangles: &[[u32; 3]], others: &[u32], first: u32, count: usize) -> Vec<u32> {
+    let mut next = vec![NONE; count];
     for &t in others {
         let corners = triangles[t as usize];
         for k in 0..3 {
             let (x, y) = (corners[k], corners[(k + 1) % 3]);
             if x >= first && y >= first {
-                next[(y - first) as usize] = (x - first, t);
+                next[(y - first) as usize] = x - first;
             }
         }
     }
@@ -167,7 +162,7 @@ fn seam(triangles: &[[u32; 3]], others: &[u32], first: u32, count: usize) -> Vec
 }
 
 /// All loops of the border with the points of the cut on them.
-fn rings(border: &Border, kept: &Kept, found: &[OnBorder], seam: &[(u32, u32)], h: f64) -> Result<Vec<Ring>, Misfit> {
+fn rings(border: &Border, kept: &Kept, found: &[OnBorder], seam: &[u32], h: f64) -> Result<Vec<Ring>, Misfit> {
     let at = |v: u32| kept.mesh.positions[v as usize];
     let mut rings: Vec<Option<Ring>> = vec![None; border.lengths.len()];
     let mut seen = vec![false; seam.len()];
@@ -177,7 +172,7 @@ fn rings(border: &Border, kept: &Kept, found: &[OnBorder], seam: &[(u32, u32)], 
         let mut p = start as u32;
         while p != NONE && !std::mem::replace(&mut seen[p as usize], true) {
             points.push(p);
-            p = seam[p as usize].0;
+            p = seam[p as usize];
         }
         if points.is_empty() {
             continue;
@@ -217,7 +212,7 @@ struct Joint<'a> {
 }
 
 impl Joint<'_> {
-    fn assemble(&self, others: &[u32], seam: &[(u32, u32)]) -> Joined {
+    fn assemble(&self, others: &[u32]) -> Joined {
         let mut surface = Surface::default();
         let of_source = self.add_kept_vertices(&mut surface);
         let of_point = self.add_points(&mut surface, &of_source);
@@ -242,7 +237,6 @@ impl Joint<'_> {
             let seam_edge = (0..3).find(|&k| corners[k] >= self.first && corners[(k + 1) % 3] >= self.first);
             let between = seam_edge.map(|k| {
                 let y = corners[(k + 1) % 3] - self.first;
-                debug_assert_eq!(seam[y as usize].1, t);
                 (k, fills[y as usize].as_slice())
             });
             match between {
