@@ -6,8 +6,12 @@ use common::shapes::{cuboid, torus};
 use glam::{DMat3, DVec3};
 use meshwright::ldi::Expression;
 use meshwright::mesh::{TriMesh, ValidateOptions, Validity, validate};
+use meshwright::morphology::CanalKind;
 use meshwright::morphology::Operation::{self, Close, Dilate, Erode, Open};
-use meshwright::pipeline::{Error, MorphologyOptions, Options, Outcome, VoxelSize, boolean, morphology};
+use meshwright::pipeline::{
+    CanalOptions, CanalReport, Error, MorphologyOptions, Options, Outcome, Remove, VoxelSize, boolean, canals,
+    morphology,
+};
 use meshwright::progress::Progress;
 use meshwright::sdf::exact::{ExactDistance, PointSign};
 use proptest::prelude::*;
@@ -186,6 +190,82 @@ fn canals_under_the_diameter_are_filled_and_others_stay() {
             assert!(outcome.mesh.positions.iter().any(|p| p.distance(corner) < 1e-6), "{corner}");
         }
     }
+}
+
+fn listed(mesh: &TriMesh, max_diameter: f64, remove: Remove) -> (Outcome, Validity, CanalReport) {
+    let options = CanalOptions { max_diameter, remove, solid: Options::new(VoxelSize::Along(96)) };
+    let (outcome, validity) = checked(canals(mesh, &options, &Progress::none()).expect("a solid").outcome);
+    let report = outcome.report.canals.clone().expect("canals were looked for");
+    (outcome, validity, report)
+}
+
+#[test]
+fn canals_are_listed_by_width_and_filled_one_by_one() {
+    let diameters = [0.08, 0.14, 0.3];
+    let centre = |k: usize| DVec3::new(0.4 + 0.6 * k as f64, 0.5, 0.4);
+    let bores = (0..3).map(|k| cylinder(centre(k), diameters[k], 1.2, 32)).collect();
+    let mesh = without(cuboid(DVec3::ZERO, DVec3::new(2.2, 1.0, 0.8)), bores);
+    let (whole, _, report) = listed(&mesh, 0.2, Remove::None);
+    let h = whole.lattice.h;
+    assert_eq!(report.canals.len(), 2, "{:?}", report.canals);
+    for (canal, k) in report.canals.iter().zip([1, 0]) {
+        assert_eq!((canal.kind, canal.handles), (CanalKind::Tunnel, 1));
+        assert!((canal.diameter - diameters[k]).abs() < 0.1 * h, "{canal:?}");
+        assert!((canal.length - 0.8).abs() < 4.0 * h, "{canal:?}");
+        let aside = DVec3::from_array(canal.position) - centre(k);
+        assert!(aside.truncate().length() < 0.1 * h && aside.z.abs() < 0.2, "{canal:?}");
+        let volume = std::f64::consts::PI * (diameters[k] / 2.0).powi(2) * 0.8;
+        assert!((canal.volume / volume - 1.0).abs() < 0.3, "{canal:?} for {volume}");
+    }
+    // The wider of the two goes, the other stays as it was, to the bit.
+    let (outcome, validity, report) = listed(&mesh, 0.2, Remove::These(vec![1]));
+    assert_eq!((validity.genus, report.removed), (Some(2), vec![1]));
+    let near = |mesh: &TriMesh, k: usize| -> Vec<[u64; 3]> {
+        let near = mesh.positions.iter().filter(|p| (**p - centre(k)).truncate().length() < 0.2);
+        let mut near: Vec<[u64; 3]> = near.map(|p| p.to_array().map(f64::to_bits)).collect();
+        near.sort_unstable();
+        near
+    };
+    assert_eq!((near(&outcome.mesh, 0), near(&outcome.mesh, 2)), (near(&whole.mesh, 0), near(&whole.mesh, 2)));
+    assert_ne!(near(&outcome.mesh, 1), near(&whole.mesh, 1));
+    let all = listed(&mesh, 0.2, Remove::All);
+    assert_eq!((all.1.genus, all.2.removed), (Some(1), vec![1, 2]));
+    let missing =
+        CanalOptions { max_diameter: 0.2, remove: Remove::These(vec![3]), solid: Options::new(VoxelSize::Along(96)) };
+    let missing = canals(&mesh, &missing, &Progress::none());
+    assert!(matches!(missing, Err(Error::MissingCanal { number: 3, count: 2 })));
+}
+
+#[test]
+fn pits_gaps_necks_and_cavities_are_told_from_tunnels_and_inner_edges_from_all() {
+    let block = || cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.8));
+    let one = |mesh: &TriMesh| {
+        let canals = listed(mesh, 0.16, Remove::None).2.canals;
+        assert_eq!(canals.len(), 1, "{canals:?}");
+        canals[0].clone()
+    };
+    let middle = DVec3::new(0.5, 0.5, 0.8);
+    let pit = one(&without(block(), vec![cylinder(middle, 0.1, 1.0, 32)]));
+    assert_eq!((pit.kind, pit.handles), (CanalKind::Pit, 0));
+    assert!((pit.diameter - 0.1).abs() < 0.01 && (pit.length - 0.5).abs() < 0.05, "{pit:?}");
+
+    let chamber = cuboid(DVec3::splat(0.25), DVec3::new(0.75, 0.75, 0.55));
+    let neck = one(&without(block(), vec![cylinder(middle, 0.1, 1.0, 32), chamber]));
+    assert_eq!((neck.kind, neck.handles), (CanalKind::Neck, 0));
+    assert!((neck.diameter - 0.1).abs() < 0.01, "{neck:?}");
+
+    let cavity = one(&without(block(), vec![cuboid(DVec3::splat(0.4), DVec3::new(0.52, 0.7, 0.6))]));
+    assert_eq!((cavity.kind, cavity.handles), (CanalKind::Cavity, 0));
+    assert!((cavity.diameter - 0.12).abs() < 0.01, "{cavity:?}");
+
+    let mut both = block();
+    both.append(&cuboid(DVec3::new(1.09, 0.0, 0.0), DVec3::new(1.8, 1.0, 0.8)));
+    let gap = one(&both);
+    assert_eq!(gap.kind, CanalKind::Gap);
+    assert!((gap.diameter - 0.09).abs() < 0.01, "{gap:?}");
+
+    let report = listed(&angle(), 0.2, Remove::All).2;
+    assert!(report.canals.is_empty() && report.roundings > 0, "{report:?}");
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::change::RemoveChoice;
 use super::length::{BandChoice, Length, Simplify, parse_duration, parse_size};
 use super::render::{ViewChoice, parse_view};
 use crate::io::{Format, GridFormat, Unit};
@@ -65,6 +66,9 @@ pub enum Verb {
     /// Fill what a ball outside cannot reach: cracks, canals, narrow gaps
     #[command(after_help = EXIT_CODES)]
     Close(MorphologyArgs),
+    /// List canals, pits and gaps that a closing would fill, and fill those that you choose
+    #[command(after_help = EXIT_CODES)]
+    Canals(CanalArgs),
     /// Signed distance to a mesh over a lattice
     #[command(after_help = EXIT_CODES)]
     Sdf(SdfArgs),
@@ -127,6 +131,23 @@ pub struct GrowArgs {
     /// Keep edges sharp that would become round, up to LIMIT times the radius from where they were
     #[arg(long, value_name = "LIMIT", num_args = 0..=1, default_missing_value = "2", require_equals = true, value_parser = mitre_limit)]
     pub sharp: Option<f64>,
+}
+
+/// `canals IN --max-diameter LEN [--remove -o OUT]`.
+#[derive(Debug, Args)]
+pub struct CanalArgs {
+    /// The mesh; it is repaired first, all its shells together are one solid
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// Canals that a ball of this diameter does not pass are listed, by number
+    #[arg(short = 'd', long, value_name = "LEN")]
+    pub max_diameter: Length,
+    /// Fill these canals and write the rest as it was: `all`, or numbers such as 1,3
+    #[arg(long, value_name = "all|N,N", num_args = 0..=1, default_missing_value = "all")]
+    pub remove: Option<RemoveChoice>,
+    /// Flags of the pipeline and its output.
+    #[command(flatten)]
+    pub solid: SolidArgs,
 }
 
 /// A number of at least 1.
@@ -320,7 +341,7 @@ pub struct RenderArgs {
 #[derive(Debug, Args)]
 pub struct SolidArgs {
     /// Where to write the result
-    #[arg(short, long, value_name = "OUT", required_unless_present = "plan")]
+    #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Voxels along the longest side of the bounding box
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel")]

@@ -126,6 +126,9 @@ impl Failure {
                     None => failure.hint("the inputs alone need that much: a larger --max-memory"),
                 }
             }
+            Error::MissingCanal { .. } => {
+                Self::usage(error.to_string()).hint("without --remove they are listed with their numbers")
+            }
             Error::MissingOperand { .. } => Self::internal(error.to_string()),
         }
     }

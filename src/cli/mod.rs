@@ -2,6 +2,7 @@
 
 mod args;
 mod boolean;
+mod change;
 mod compare;
 mod convert;
 mod csg;
@@ -71,6 +72,9 @@ fn dispatch(verb: &Verb) -> Exit {
         Verb::Erode(args) => grow("erode", args, Operation::Erode),
         Verb::Open(args) => morphology("open", args, Operation::Open),
         Verb::Close(args) => morphology("close", args, Operation::Close),
+        Verb::Canals(args) => {
+            solid("canals", &args.solid, &[&args.input], |session, report| morphology::canals(args, session, report))
+        }
         Verb::Sdf(args) => run("sdf", &args.common, &[&args.input], args.output.as_deref(), |session, report| {
             sdf::run(args, session, report)
         }),

@@ -1,10 +1,13 @@
-//! `dilate`, `erode`, `open` and `close IN -o OUT --radius LEN`.
+//! `dilate`, `erode`, `open` and `close IN -o OUT --radius LEN`, and `canals IN --max-diameter LEN`.
 
-use super::args::{GrowArgs, MorphologyArgs};
+use std::path::Path;
+
+use super::args::{CanalArgs, GrowArgs, MorphologyArgs, SolidArgs};
+use super::change::Change;
 use super::exit::{Exit, Failure};
 use super::report::RunReport;
 use super::session::Session;
-use super::solid::{self, Change, Job};
+use super::solid::{self, Job};
 use crate::ldi::Expression;
 use crate::morphology::Operation;
 
@@ -21,12 +24,27 @@ pub fn run(
     session: &Session,
     report: &mut RunReport,
 ) -> Result<Exit, Failure> {
-    let job = Job {
-        paths: vec![&args.input],
-        names: Vec::new(),
-        expression: Expression::Operand(0),
-        change: Some(Change { operation, radius: args.radius, mitre }),
-        args: &args.solid,
-    };
+    let change = Change::Morphology { operation, radius: args.radius, mitre };
+    changed(&args.input, &change, &args.solid, session, report)
+}
+
+/// Lists the canals of one file, or fills them.
+pub fn canals(args: &CanalArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
+    if args.remove.is_none() && args.solid.output.is_some() {
+        return Err(Failure::usage("without --remove the canals are only listed, and nothing is written to -o"));
+    }
+    let change = Change::Canals { max_diameter: args.max_diameter, remove: args.remove.clone() };
+    changed(&args.input, &change, &args.solid, session, report)
+}
+
+fn changed(
+    input: &Path,
+    change: &Change,
+    args: &SolidArgs,
+    session: &Session,
+    report: &mut RunReport,
+) -> Result<Exit, Failure> {
+    let job =
+        Job { paths: vec![input], names: Vec::new(), expression: Expression::Operand(0), change: Some(change), args };
     solid::run(&job, session, report)
 }

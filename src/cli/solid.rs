@@ -5,9 +5,10 @@ use std::path::Path;
 use serde_json::json;
 
 use super::args::SolidArgs;
+use super::change::{self, Change, Changed};
 use super::exit::{Exit, Failure};
 use super::input::{self, Input};
-use super::length::{Length, Scale, Simplify};
+use super::length::{Scale, Simplify};
 use super::output::{Target, write_verified};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
@@ -16,8 +17,7 @@ use crate::fit::FitOptions;
 use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
-use crate::morphology::Operation;
-use crate::pipeline::{self, MorphologyOptions, Options, Outcome, TriangleSource, VoxelSize};
+use crate::pipeline::{self, Options, Outcome, TriangleSource, VoxelSize};
 use crate::sdf::{RobustOptions, Trust};
 use crate::vote::VoteRule;
 
@@ -30,25 +30,17 @@ pub struct Job<'a> {
     /// The result in terms of the operands.
     pub expression: Expression,
     /// What is done to that solid.
-    pub change: Option<Change>,
+    pub change: Option<&'a Change>,
     /// The flags.
     pub args: &'a SolidArgs,
-}
-
-/// Morphology, as asked for.
-#[derive(Debug, Clone, Copy)]
-pub struct Change {
-    /// What is done.
-    pub operation: Operation,
-    /// The radius.
-    pub radius: Length,
-    /// How far sharp edges may reach, times the radius.
-    pub mitre: Option<f64>,
 }
 
 /// Runs the pipeline from file to file.
 pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let args = job.args;
+    if args.output.is_none() && !args.plan && job.change.is_none_or(Change::makes_a_mesh) {
+        return Err(Failure::usage("where to write the result is not said").hint("-o OUT, or --plan"));
+    }
     let mut target = args.output.as_deref().map(|path| Target::new(path, &args.writing, &job.paths)).transpose()?;
     if let Some(map) = &args.map {
         super::compare::check_map(map, &job.paths)?;
@@ -61,19 +53,17 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
         input.entry.name = Some(name.clone());
     }
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
-    let options = options(args, unit, &inputs)?;
+    let (options, scale) = options(args, unit, &inputs)?;
     report.options = resolved(args, unit, &options);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
-    match &mut target {
-        Some(target) if !args.plan => {
-            target.set_unit(unit);
-            make(job, &inputs, &options, target, session, report)
-        }
-        _ => plan(inputs, &options, unit, args, report),
+    if args.plan {
+        return plan(inputs, &options, unit, args, report);
     }
+    target.iter_mut().for_each(|target| target.set_unit(unit));
+    make(job, &inputs, (&options, &scale), target.as_ref(), session, report)
 }
 
-fn options(args: &SolidArgs, unit: Option<Unit>, inputs: &[Input]) -> Result<Options, Failure> {
+fn options(args: &SolidArgs, unit: Option<Unit>, inputs: &[Input]) -> Result<(Options, Scale), Failure> {
     let bounds = inputs.iter().filter_map(|input| input.loaded.mesh.bounds()).reduce(|a, b| a.union(&b));
     let diagonal = bounds.as_ref().map_or(0.0, Bounds::diagonal);
     let voxel = match &args.voxel {
@@ -82,7 +72,7 @@ fn options(args: &SolidArgs, unit: Option<Unit>, inputs: &[Input]) -> Result<Opt
     };
     let longest = bounds.map_or(0.0, |b| b.size().max_element());
     let scale = Scale { unit, diagonal, voxel: Some(voxel.spacing(longest)) };
-    Ok(Options {
+    let options = Options {
         fit: fit(args, &scale, inputs)?,
         classes: inputs.iter().map(|input| pipeline::classes(input.loaded.colours.as_ref())).collect(),
         orient: args.orient.into(),
@@ -91,7 +81,8 @@ fn options(args: &SolidArgs, unit: Option<Unit>, inputs: &[Input]) -> Result<Opt
         collapse: !args.no_collapse,
         max_memory: args.max_memory,
         ..Options::new(voxel)
-    })
+    };
+    Ok((options, scale))
 }
 
 /// Only votes that end in the winding number have no noise to be smoothed away.
@@ -167,13 +158,13 @@ fn plan(
 fn make(
     job: &Job<'_>,
     inputs: &[Input],
-    options: &Options,
-    target: &Target,
+    (options, scale): (&Options, &Scale),
+    target: Option<&Target>,
     session: &Session,
     report: &mut RunReport,
 ) -> Result<Exit, Failure> {
     let args = job.args;
-    let unit = target.options.unit;
+    let unit = scale.unit;
     report.timed("examine", |report| {
         session.progress.stage("examine")?;
         for (input, entry) in inputs.iter().zip(&mut report.inputs) {
@@ -182,34 +173,21 @@ fn make(
         Ok::<(), Failure>(())
     })?;
     let meshes: Vec<TriMesh> = inputs.iter().map(|input| input.loaded.mesh.clone()).collect();
-    let outcome = match &job.change {
-        None => pipeline::boolean(&meshes, &job.expression, options, &session.progress),
-        Some(change) => {
-            let change = changed(change, &meshes, unit, options)?;
-            report.options["radius"] = json!(change.radius);
-            report.options["mitre"] = json!(change.mitre);
-            pipeline::morphology(&meshes[0], &change, &session.progress)
-        }
+    let made = match &job.change {
+        None => pipeline::boolean(&meshes, &job.expression, options, &session.progress).map(Changed::from),
+        Some(change) => change.apply(&meshes[0], options, scale, session, report)?,
     };
-    let outcome = outcome.map_err(|e| failure(&e, inputs, unit, args))?;
+    let Changed { outcome, canal_of } = made.map_err(|e| failure(&e, inputs, unit, args))?;
     drop(meshes);
     report.stages.extend(outcome.report.stages.iter().cloned());
     report.warnings.extend(outcome.report.warnings.iter().cloned());
     if let Some(path) = &args.map {
-        report.timed("map", |_| write_map(path, &outcome, session))?;
+        report.timed("map", |_| write_map(path, &outcome, &canal_of, session))?;
     }
     report.pipeline = Some(outcome.report.clone());
-    let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
-    let colours = pipeline::carry_colours(&outcome, &operands);
-    report.warnings.extend(
-        colours
-            .as_ref()
-            .and_then(|colours| super::convert::lost_colours(colours, &outcome.mesh, target.options.format)),
-    );
-    let (entry, validity) = report.timed("write and verify", |_| {
-        write_verified(target, &outcome.mesh, colours.as_ref(), session, |read| judge(read, &outcome.mesh, session))
-    })?;
-    report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
+    if let Some(target) = target {
+        write(inputs, &outcome, target, session, report)?;
+    }
     let broken = limits::broken(report, options.max_memory);
     report.warnings.extend(broken.iter().cloned());
     report.seconds = session.start.elapsed().as_secs_f64();
@@ -217,31 +195,51 @@ fn make(
     session.clear_bar();
     let name = unit.map(|unit| unit.to_string());
     summary::say(session, report, name.as_deref());
+    change::list(job.change, report, &args.common, name.as_deref())?;
     Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
 }
 
-/// The operation with its radius in model units.
-fn changed(
-    change: &Change,
-    meshes: &[TriMesh],
-    unit: Option<Unit>,
-    options: &Options,
-) -> Result<MorphologyOptions, Failure> {
-    let bounds = meshes.iter().filter_map(TriMesh::bounds).reduce(|a, b| a.union(&b));
-    let (diagonal, longest) = bounds.map_or((0.0, 0.0), |b| (b.diagonal(), b.size().max_element()));
-    let scale = Scale { unit, diagonal, voxel: Some(options.voxel.spacing(longest)) };
-    let (operation, mitre) = (change.operation, change.mitre);
-    Ok(MorphologyOptions { operation, mitre, radius: change.radius.resolve(&scale)?, solid: options.clone() })
+/// Writes the result and judges the written file.
+fn write(
+    inputs: &[Input],
+    outcome: &Outcome,
+    target: &Target,
+    session: &Session,
+    report: &mut RunReport,
+) -> Result<(), Failure> {
+    let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
+    let colours = pipeline::carry_colours(outcome, &operands);
+    let lost = colours.as_ref().and_then(|c| super::convert::lost_colours(c, &outcome.mesh, target.options.format));
+    report.warnings.extend(lost);
+    let (entry, validity) = report.timed("write and verify", |_| {
+        write_verified(target, &outcome.mesh, colours.as_ref(), session, |read| judge(read, &outcome.mesh, session))
+    })?;
+    report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
+    Ok(())
 }
 
 /// What is original, and what closes a hole.
 const ORIGINAL: Rgba = [205, 210, 215, 255];
 const MADE_UP: Rgba = [220, 60, 40, 255];
 
-/// Writes the result coloured by where its triangles come from.
-fn write_map(path: &Path, outcome: &Outcome, session: &Session) -> Result<(), Failure> {
-    let colour = |source: &TriangleSource| if *source == TriangleSource::Closed { MADE_UP } else { ORIGINAL };
-    let colours = Colours::Faces(outcome.sources.iter().map(colour).collect());
+/// Walls of canals, by their numbers.
+const CANALS: [Rgba; 6] = [
+    [220, 60, 40, 255],
+    [40, 120, 220, 255],
+    [240, 160, 30, 255],
+    [60, 160, 70, 255],
+    [150, 80, 190, 255],
+    [0, 170, 180, 255],
+];
+
+/// Writes the result coloured by where its triangles come from, and by the canals that they bound.
+fn write_map(path: &Path, outcome: &Outcome, canal_of: &[u32], session: &Session) -> Result<(), Failure> {
+    let colour = |(t, source): (usize, &TriangleSource)| match (canal_of.get(t), source) {
+        (Some(&canal), _) if canal > 0 => CANALS[(canal as usize - 1) % CANALS.len()],
+        (_, TriangleSource::Closed) => MADE_UP,
+        _ => ORIGINAL,
+    };
+    let colours = Colours::Faces(outcome.sources.iter().enumerate().map(colour).collect());
     session.progress.check()?;
     io::write_coloured(path, &outcome.mesh, Some(&colours), &WriteOptions::new(Format::Ply))
         .map_err(|e| Failure::internal(e.to_string()))

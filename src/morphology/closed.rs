@@ -4,7 +4,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::offset::{MARGIN, shift, tangent};
-use super::{Body, MorphologyError, Offset};
+use super::{Body, MorphologyError, Offset, Region};
 use crate::contour::{ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
 use crate::lattice::{BRICK, Grid, Lattice};
 use crate::mesh::{Plane, TriMesh};
@@ -26,16 +26,20 @@ fn touching(radius: f64, h: f64) -> f64 {
 }
 
 /// Where the way there and back ends this near to where it began, model units, nothing has changed.
-fn unchanged(radius: f64, h: f64) -> f64 {
+pub(super) fn unchanged(radius: f64, h: f64) -> f64 {
     CHORD * h + touching(radius, h) / 4.0
 }
+
+/// What lies over a point of the surface is looked up this far from it, h.
+pub(super) const BESIDE: f64 = 0.6;
 
 /// Most samples along the edge of a triangle.
 const MOST_SAMPLES: usize = 64;
 
 /// The solid `first`, a level of `original`'s distance at `radius` (model units, positive outside), taken back by the same
 /// length: a closing for a positive radius, an opening for a negative one. Where that changes nothing, the vertices lie on
-/// triangles of `original` and have their numbers; elsewhere those of planes, numbered after them.
+/// triangles of `original` and have their numbers; elsewhere those of planes, numbered after them. With a `region` nothing
+/// changes elsewhere.
 ///
 /// # Errors
 /// Those of [`exact`], and a stop.
@@ -44,22 +48,31 @@ pub fn closed(
     first: &Body<'_>,
     radius: f64,
     lattice: &Lattice,
+    region: Option<&Region<'_>>,
     progress: &Progress,
 ) -> Result<Offset, MorphologyError> {
     let near = |mesh: &TriMesh, band: f64| {
         exact(mesh, lattice, Sign::Pseudonormal, &ExactOptions { band: Band::Within(band), max_memory: None }, progress)
     };
-    let mut field = near(first.mesh, radius.abs() / lattice.h + MARGIN)?;
-    let own = near(original.mesh, MARGIN)?;
-    shift(&mut field, (radius / lattice.h) as f32);
-    follow(&mut field, &own, (unchanged(radius, lattice.h) / lattice.h) as f32);
+    let mut closing = near(first.mesh, radius.abs() / lattice.h + MARGIN)?;
+    shift(&mut closing, (radius / lattice.h) as f32);
+    let within = (unchanged(radius, lattice.h) / lattice.h) as f32;
+    let own = near(original.mesh, MARGIN + region.map_or(0.0, |_| radius.abs() / lattice.h))?;
+    let holds = |voxel: IVec3| region.is_none_or(|region| region.holds(voxel));
+    let changed = |voxel: IVec3| {
+        let (value, before) = (closing.get(voxel), own.get(voxel));
+        if (value - before).abs() < within || !holds(voxel) { before } else { value }
+    };
+    // Only the solid's own bricks reach along canals that stay, only those of the closing along what is filled.
+    let field = over(if region.is_some() { &own } else { &closing }, changed);
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
     let crossing = |edge: Edge| {
         let voxels = [edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]];
         let ends = voxels.map(model);
         let at = |t: f64| ends[0].lerp(ends[1], t);
         let h = lattice.h;
-        let stays = |t: &f64| (first.at(at(*t), radius.abs() + h).0 + radius).abs() < unchanged(radius, h);
+        let free = voxels.into_iter().any(holds);
+        let stays = |t: &f64| !free || (first.at(at(*t), radius.abs() + h).0 + radius).abs() < unchanged(radius, h);
         let own = voxels.map(|voxel| f64::from(own.get(voxel)) * h);
         match original.passage(ends, own, 0.0).filter(stays) {
             Some(t) => Some(Crossing { t, triangle: original.distance().at(at(t))?.triangle }),
@@ -81,18 +94,14 @@ pub fn closed(
     Ok(Offset { contour, planes })
 }
 
-/// Takes the original's own distance where the two agree, `within` in h.
-fn follow(field: &mut Grid<f32>, own: &Grid<f32>, within: f32) {
-    let bricks = field.bricks.clone();
-    field.values.par_iter_mut().zip(bricks.active()).for_each(|(values, &brick)| {
-        for (n, value) in (0i32..).zip(values.iter_mut()) {
-            let voxel = BRICK * brick + IVec3::new(n & 7, n >> 3 & 7, n >> 6);
-            let before = own.get(voxel);
-            if (*value - before).abs() < within {
-                *value = before;
-            }
-        }
-    });
+/// The values of `value` at the voxels of the bricks of `grid`, and its classes elsewhere.
+fn over(grid: &Grid<f32>, value: impl Fn(IVec3) -> f32 + Sync) -> Grid<f32> {
+    let of_brick = |&brick: &IVec3| {
+        let voxel = |n: usize| BRICK * brick + IVec3::new(n as i32 & 7, n as i32 >> 3 & 7, n as i32 >> 6);
+        std::array::from_fn(|n| value(voxel(n)))
+    };
+    let values = grid.bricks.active().par_iter().map(of_brick).collect();
+    Grid { bricks: grid.bricks.clone(), values, inside: grid.inside, outside: grid.outside }
 }
 
 /// Which points of a triangle a ball reaches.
@@ -106,8 +115,15 @@ pub struct Reached {
 
 /// For each triangle of `body` which of its points (corners, and others about `h` apart) a ball of `radius` (model units)
 /// touches from outside without meeting the solid elsewhere; from inside for a negative radius (Bærentzen §5.2: the
-/// offset point has to be at that distance).
-pub fn reached(body: &Body<'_>, radius: f64, h: f64, progress: &Progress) -> Result<Vec<Reached>, Stopped> {
+/// offset point has to be at that distance). Points that are not beside the `region` count as touched.
+pub fn reached(
+    body: &Body<'_>,
+    radius: f64,
+    lattice: &Lattice,
+    region: Option<&Region<'_>>,
+    progress: &Progress,
+) -> Result<Vec<Reached>, Stopped> {
+    let h = lattice.h;
     let of = |t: usize| {
         if t.is_multiple_of(1024) {
             progress.check()?;
@@ -115,6 +131,9 @@ pub fn reached(body: &Body<'_>, radius: f64, h: f64, progress: &Progress) -> Res
         let corners = body.mesh.corners(t);
         let normal = Plane::through(corners).normal;
         let touches = |p: &DVec3| {
+            if region.is_some_and(|region| !region.is_beside(lattice.to_lattice(*p) + normal * BESIDE)) {
+                return true;
+            }
             let far =
                 body.distance().within(*p + normal * radius, radius.abs()).map_or(radius.abs(), |n| n.signed.abs());
             far >= radius.abs() - touching(radius, h)
@@ -127,7 +146,7 @@ pub fn reached(body: &Body<'_>, radius: f64, h: f64, progress: &Progress) -> Res
 }
 
 /// Points of a triangle about `spacing` apart, its corners among them.
-fn samples([a, b, c]: [DVec3; 3], spacing: f64) -> Vec<DVec3> {
+pub(super) fn samples([a, b, c]: [DVec3; 3], spacing: f64) -> Vec<DVec3> {
     let longest = (b - a).length().max((c - b).length()).max((a - c).length());
     let steps = ((longest / spacing).ceil() as usize).clamp(1, MOST_SAMPLES);
     let share = |k: usize| k as f64 / steps as f64;

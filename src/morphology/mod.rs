@@ -5,10 +5,13 @@
 //! put creases between ([`offset`]). Closing dilates and erodes that again, opening erodes and dilates ([`closed`]).
 //! What a closing does not change stays as it was: where the second field agrees with the first solid's own distance, the
 //! surface goes back to it, and triangles all of which a ball of the radius reaches from outside are kept by the fit.
+//! [`canals`] lists what a closing would fill, and lets it fill only some of that.
 
+mod canals;
 mod closed;
 mod offset;
 
+pub use canals::{Canal, CanalKind, Canals, Region, canals};
 pub use closed::{Reached, closed, reached};
 pub use offset::{Body, Offset, offset};
 

@@ -1,5 +1,6 @@
 //! The pipelines: short functions that read like the drawing in the crate's documentation.
 
+mod canals;
 mod colours;
 mod distance;
 mod morphology;
@@ -10,6 +11,7 @@ mod report;
 mod solid;
 mod stages;
 
+pub use canals::{CanalOptions, CanalOutcome, CanalReport, Remove, canals};
 pub use colours::{carry_colours, classes};
 pub use distance::{
     DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, distance,
@@ -171,6 +173,14 @@ pub enum Error {
         allowed: u64,
         /// A voxel size that fits, model units; `None` when no size does.
         voxel_that_fits: Option<f64>,
+    },
+    /// A canal was to be filled that is not in the list.
+    #[error("there is no canal {number}: {count} were found")]
+    MissingCanal {
+        /// The number that was given.
+        number: u32,
+        /// Canals found.
+        count: u32,
     },
     /// The expression names an operand that was not given.
     #[error("the expression names operand {operand}, but only {given} were given")]

@@ -7,7 +7,7 @@ use crate::fit::{Facets, FitOptions, FitReport, Surface, Wanted, fit};
 use crate::lattice::Lattice;
 use crate::ldi::{Evidence, Expression};
 use crate::mesh::{TriMesh, ValidateOptions, validate};
-use crate::morphology::{Body, MorphologyError, Offset, Operation, closed, offset, reached};
+use crate::morphology::{Body, MorphologyError, Offset, Operation, Region, closed, offset, reached};
 use crate::progress::Progress;
 
 /// Options of [`morphology`].
@@ -45,12 +45,7 @@ pub struct MorphologyReport {
 /// Those of [`boolean`]; [`Error::NothingEnclosed`] when nothing is left; [`Error::VoxelSize`] for a radius that
 /// the lattice cannot hold.
 pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progress) -> Result<Outcome, Error> {
-    let radius = options.radius;
-    if !(radius > 0.0 && radius.is_finite()) {
-        return Err(Error::VoxelSize {
-            reason: format!("a radius of {radius} cannot be used; it must be a positive length"),
-        });
-    }
+    let radius = usable(options.radius)?;
     let outcome = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let mut stages = stages::Stages::new(progress);
     let run = Run { solid: &outcome.mesh, h: outcome.lattice.h, options, progress };
@@ -63,18 +58,24 @@ pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progr
     Ok(run.finish(&outcome, made, stages))
 }
 
+/// A radius, or why it is none.
+pub(super) fn usable(radius: f64) -> Result<f64, Error> {
+    let reason = || format!("a radius of {radius} cannot be used; it must be a positive length");
+    if radius > 0.0 && radius.is_finite() { Ok(radius) } else { Err(Error::VoxelSize { reason: reason() }) }
+}
+
 /// The fitted surface and, for each of its triangles, the solid's triangle that it lies on.
-struct Made {
+pub(super) struct Made {
     surface: Surface,
     own: Vec<Option<u32>>,
     fit: Option<FitReport>,
 }
 
-struct Run<'a> {
-    solid: &'a TriMesh,
-    h: f64,
-    options: &'a MorphologyOptions,
-    progress: &'a Progress,
+pub(super) struct Run<'a> {
+    pub solid: &'a TriMesh,
+    pub h: f64,
+    pub options: &'a MorphologyOptions,
+    pub progress: &'a Progress,
 }
 
 impl Run<'_> {
@@ -89,32 +90,53 @@ impl Run<'_> {
     }
 
     fn there_and_back(&self, radius: f64, stages: &mut stages::Stages<'_>) -> Result<Made, Error> {
-        stages.begin("first offset")?;
         let body = Body::new(self.solid, None);
+        let first = self.there(&body, radius, stages)?;
+        self.back(&body, &Body::new(&first, None), radius, None, stages)
+    }
+
+    /// The first step of a closing or opening, as a surface.
+    pub(super) fn there(
+        &self,
+        body: &Body<'_>,
+        radius: f64,
+        stages: &mut stages::Stages<'_>,
+    ) -> Result<TriMesh, Error> {
+        stages.begin("first offset")?;
         let lattice = self.lattice(radius.max(0.0))?;
-        let there = offset(&body, radius, &lattice, self.progress).map_err(|e| self.error(e))?;
+        let there = offset(body, radius, &lattice, self.progress).map_err(|e| self.error(e))?;
         let off = |p| (body.at(p, radius.abs() + self.h).0 - radius).abs();
         // All triangles stay: the second distance is to this surface.
         let whole = FitOptions { tolerance: 0.0, ..self.options.solid.fit.unwrap_or_default() };
-        let first = self
-            .fitted((there, &lattice), (&TriMesh::default(), &off), Evidence::default(), Some(whole), radius)?
-            .surface;
+        let made =
+            self.fitted((there, &lattice), (&TriMesh::default(), &off), Evidence::default(), Some(whole), radius)?;
+        Ok(made.surface.mesh)
+    }
+
+    /// The second step, from `first`; within a region, or everywhere.
+    pub(super) fn back(
+        &self,
+        body: &Body<'_>,
+        first: &Body<'_>,
+        radius: f64,
+        region: Option<&Region<'_>>,
+        stages: &mut stages::Stages<'_>,
+    ) -> Result<Made, Error> {
         stages.begin("second offset")?;
-        let first_body = Body::new(&first.mesh, None);
         let lattice = self.lattice(0.0)?;
-        let back = closed(&body, &first_body, radius, &lattice, self.progress).map_err(|e| self.error(e))?;
-        let reached = reached(&body, radius, self.h, self.progress)?;
+        let back = closed(body, first, radius, &lattice, region, self.progress).map_err(|e| self.error(e))?;
+        let reached = reached(body, radius, &lattice, region, self.progress)?;
         stages.begin("fit")?;
         let evidence = Evidence::of_samples(reached.iter().map(|r| (r.tried, r.touched)));
         let off = |p| {
             let own = body.at(p, self.h).0.abs();
-            if own < 1e-3 * self.h { own } else { own.min((first_body.at(p, radius.abs() + self.h).0 + radius).abs()) }
+            if own < 1e-3 * self.h { own } else { own.min((first.at(p, radius.abs() + self.h).0 + radius).abs()) }
         };
         self.fitted((back, &lattice), (self.solid, &off), evidence, self.options.solid.fit, -radius)
     }
 
     /// The lattice for the solid grown by `room`, model units.
-    fn lattice(&self, room: f64) -> Result<Lattice, Error> {
+    pub(super) fn lattice(&self, room: f64) -> Result<Lattice, Error> {
         let mut bounds = super::prepare::bounds(std::slice::from_ref(self.solid))?;
         (bounds.min, bounds.max) = (bounds.min - room, bounds.max + room);
         super::prepare::lattice(&bounds, super::VoxelSize::Length(self.h))
@@ -149,7 +171,7 @@ impl Run<'_> {
         Ok(Made { surface, own, fit: fitted })
     }
 
-    fn finish(&self, solid: &Outcome, made: Made, stages: stages::Stages<'_>) -> Outcome {
+    pub(super) fn finish(&self, solid: &Outcome, made: Made, stages: stages::Stages<'_>) -> Outcome {
         let Made { surface, own, fit } = made;
         let source = |own: &Option<u32>| own.map_or(TriangleSource::Closed, |t| solid.sources[t as usize]);
         let sources: Vec<TriangleSource> = own.iter().map(source).collect();
@@ -169,7 +191,7 @@ impl Run<'_> {
         Outcome { mesh: surface.mesh, sources, lattice: solid.lattice, report }
     }
 
-    fn error(&self, error: MorphologyError) -> Error {
+    pub(super) fn error(&self, error: MorphologyError) -> Error {
         match error {
             MorphologyError::Stopped(stopped) => stopped.into(),
             MorphologyError::Distance(error) => Error::VoxelSize { reason: error.to_string() },

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::MorphologyReport;
+use super::{CanalReport, MorphologyReport};
 
 use crate::fit::FitReport;
 use crate::orient::OrientReport;
@@ -27,6 +27,8 @@ pub struct Report {
     pub fit: Option<FitReport>,
     /// Dilation, erosion, closing or opening; `None` without.
     pub morphology: Option<MorphologyReport>,
+    /// Canals that were listed; `None` where none were looked for.
+    pub canals: Option<CanalReport>,
     /// Triangles of the result that close holes, or that morphology has made.
     pub closed_triangles: usize,
     /// Wall-clock time of each stage, in order.

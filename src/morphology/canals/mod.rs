@@ -1,0 +1,144 @@
+//! Canals: what a closing would fill, place by place, with the widest ball that passes.
+//!
+//! The voxels that the closing fills fall into connected parts. Each part meets the solid, and where the ball comes near,
+//! the open: its mouths. Filling one changes the solid's handles by what its voxels' Euler number says, which tells
+//! tunnels from the rounding of inner edges; a part with one mouth is a pit if it is deeper than wide.
+
+mod fill;
+mod passage;
+mod topology;
+
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::closed::{BESIDE, samples};
+use super::{Body, MorphologyError};
+use crate::lattice::{Grid, Lattice};
+use crate::mesh::{Plane, TriMesh};
+use crate::progress::Progress;
+use fill::{Fill, Part};
+
+/// What a canal is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CanalKind {
+    /// It leads through: filling it takes handles away.
+    Tunnel,
+    /// It ends blindly, deeper than wide: a narrow hole, a groove, a crack.
+    Pit,
+    /// It lies between two bodies, which filling it joins.
+    Gap,
+    /// It leads into a wide chamber, which filling it shuts.
+    Neck,
+    /// It is shut already.
+    Cavity,
+}
+
+impl std::fmt::Display for CanalKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Tunnel => "tunnel",
+            Self::Pit => "pit",
+            Self::Gap => "gap",
+            Self::Neck => "neck",
+            Self::Cavity => "cavity",
+        })
+    }
+}
+
+/// One canal; all in model units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Canal {
+    /// Its number, from 1: the widest first.
+    pub number: u32,
+    /// What it is.
+    pub kind: CanalKind,
+    /// Diameter of the largest ball that passes (that goes halfway in, for a pit; that fits, for a cavity).
+    pub diameter: f64,
+    /// Length of the way through the filled part, or to its farthest point.
+    pub length: f64,
+    /// A point where it is narrowest.
+    pub position: [f64; 3],
+    /// Volume that would be filled, counted in voxels.
+    pub volume: f64,
+    /// Handles of the solid that filling takes away: by how much the genus shrinks.
+    pub handles: u32,
+}
+
+/// The canals of a solid.
+pub struct Canals {
+    /// Them, by their numbers.
+    pub list: Vec<Canal>,
+    /// Shallow places that the closing rounds: inner edges and dents.
+    pub roundings: usize,
+    /// For each voxel the number of the canal that it belongs to, or that it borders on; 0: none.
+    of: Grid<u32>,
+}
+
+impl Canals {
+    /// The voxels of the canals that are `chosen` by their numbers.
+    pub fn region(&self, chosen: impl Fn(u32) -> bool) -> Region<'_> {
+        let chosen = (0..=self.list.len() as u32).map(|number| number > 0 && chosen(number)).collect();
+        Region { of: &self.of, chosen }
+    }
+
+    /// For each triangle of the solid the number of the canal that it is a wall of; 0: none.
+    pub fn walls(&self, solid: &TriMesh, lattice: &Lattice) -> Vec<u32> {
+        let over = |t: usize| {
+            let corners = solid.corners(t);
+            let up = Plane::through(corners).normal * BESIDE;
+            let number = |p: DVec3| self.of.get((lattice.to_lattice(p) + up).round().as_ivec3());
+            samples(corners, lattice.h).into_iter().map(number).find(|&number| number > 0).unwrap_or(0)
+        };
+        (0..solid.triangles.len()).into_par_iter().map(over).collect()
+    }
+}
+
+/// Voxels of some canals.
+pub struct Region<'a> {
+    of: &'a Grid<u32>,
+    chosen: Vec<bool>,
+}
+
+impl Region<'_> {
+    /// Whether `voxel` is one of them.
+    pub fn holds(&self, voxel: IVec3) -> bool {
+        self.chosen[self.of.get(voxel) as usize]
+    }
+
+    /// Whether one of the voxels around `p` (lattice coordinates) is one of them.
+    pub(super) fn is_beside(&self, p: DVec3) -> bool {
+        let low = p.floor().as_ivec3();
+        (0..8).any(|n| self.holds(low + IVec3::new(n & 1, n >> 1 & 1, n >> 2)))
+    }
+}
+
+/// The canals that a closing by `radius` (model units) fills in the solid `original`, whose dilation is `first`.
+///
+/// # Errors
+/// Those of [`crate::sdf::exact::exact`], and a stop.
+pub fn canals(
+    original: &Body<'_>,
+    first: &Body<'_>,
+    radius: f64,
+    lattice: &Lattice,
+    progress: &Progress,
+) -> Result<Canals, MorphologyError> {
+    let fill = Fill::new(original, first, radius, lattice, progress)?;
+    let shells = [original, first].map(|body| topology::shells(body.mesh));
+    let parts = fill.parts();
+    let judge = |part: &Part| {
+        progress.check()?;
+        let changes = topology::changes(part, &fill, [original, first], &shells, lattice);
+        Ok(passage::measure(part, &changes, original.distance(), lattice))
+    };
+    let judged: Vec<Option<Canal>> = parts.par_iter().map(judge).collect::<Result<_, MorphologyError>>()?;
+    let roundings = judged.iter().filter(|canal| canal.is_none()).count();
+    let mut found: Vec<(Canal, &Part)> =
+        judged.into_iter().zip(&parts).filter_map(|(canal, part)| Some((canal?, part))).collect();
+    found.sort_by(|a, b| b.0.diameter.total_cmp(&a.0.diameter));
+    (1..).zip(&mut found).for_each(|(number, (canal, _))| canal.number = number);
+    let of = fill.numbered(found.iter().map(|(_, part)| *part));
+    Ok(Canals { list: found.into_iter().map(|(canal, _)| canal).collect(), roundings, of })
+}
