@@ -3,15 +3,13 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 
 use super::change::RemoveChoice;
+use super::choices::{Defect, EdgeChoice, MethodChoice, OrientChoice, SideChoice, SignChoice, VoteChoice};
 use super::length::{BandChoice, Length, Simplify, parse_duration, parse_size};
 use super::render::{ViewChoice, parse_view};
 use crate::io::{Format, GridFormat, Unit};
-use crate::orient::OrientMode;
-use crate::pipeline::{DistanceMethod, DistanceSign};
-use crate::vote::VoteRule;
 
 const EXIT_CODES: &str = "\
 Exit status:
@@ -69,6 +67,9 @@ pub enum Verb {
     /// List canals, pits and gaps that a closing would fill, and fill those that you choose
     #[command(after_help = EXIT_CODES)]
     Canals(CanalArgs),
+    /// Let walls that are too thin, and open sheets, grow to a thickness
+    #[command(after_help = EXIT_CODES)]
+    Thicken(ThickenArgs),
     /// Signed distance to a mesh over a lattice
     #[command(after_help = EXIT_CODES)]
     Sdf(SdfArgs),
@@ -145,6 +146,23 @@ pub struct CanalArgs {
     /// Fill these canals and write the rest as it was: `all`, or numbers such as 1,3
     #[arg(long, value_name = "all|N,N", num_args = 0..=1, default_missing_value = "all")]
     pub remove: Option<RemoveChoice>,
+    /// Flags of the pipeline and its output.
+    #[command(flatten)]
+    pub solid: SolidArgs,
+}
+
+/// `thicken IN -o OUT --min LEN`.
+#[derive(Debug, Args)]
+pub struct ThickenArgs {
+    /// The mesh; it is repaired first, all its shells together are one solid
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// The least thickness of walls, at least four voxels
+    #[arg(short, long, value_name = "LEN")]
+    pub min: Length,
+    /// Where open sheets grow
+    #[arg(long, value_enum, default_value_t = SideChoice::Both)]
+    pub side: SideChoice,
     /// Flags of the pipeline and its output.
     #[command(flatten)]
     pub solid: SolidArgs,
@@ -236,6 +254,15 @@ pub struct InspectArgs {
     /// The mesh to look at
     #[arg(value_name = "IN")]
     pub input: PathBuf,
+    /// Also measure the thickness of walls and gaps along the rays of a lattice
+    #[arg(long)]
+    pub thickness: bool,
+    /// Voxels along the longest side of the bounding box, for --thickness
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel", requires = "thickness")]
+    pub resolution: u32,
+    /// Size of a voxel, instead of --resolution
+    #[arg(long, value_name = "LEN", requires = "thickness")]
+    pub voxel: Option<Length>,
     /// Exit with 3 when the mesh has one of these defects
     #[arg(long, value_name = "DEFECT", value_delimiter = ',', value_enum)]
     pub fail_on: Vec<Defect>,
@@ -433,120 +460,6 @@ pub struct CommonArgs {
     /// More on standard error
     #[arg(short, long)]
     pub verbose: bool,
-}
-
-/// `--orient`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum OrientChoice {
-    /// Turn triangles so that patches agree and the rays enter before they leave
-    Auto,
-    /// Trust the file
-    Keep,
-}
-
-impl From<OrientChoice> for OrientMode {
-    fn from(choice: OrientChoice) -> Self {
-        match choice {
-            OrientChoice::Auto => Self::Auto,
-            OrientChoice::Keep => Self::Keep,
-        }
-    }
-}
-
-/// `--vote`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum VoteChoice {
-    /// The rays where ten or more balance and agree; elsewhere the winding number
-    Winding,
-    /// The majority of the rays that balance; where they are few, their halves
-    HalfRays,
-    /// The majority of the rays that balance
-    Majority,
-    /// More than half of all 13 rays
-    Paper,
-}
-
-impl From<VoteChoice> for VoteRule {
-    fn from(choice: VoteChoice) -> Self {
-        match choice {
-            VoteChoice::Winding => Self::Winding,
-            VoteChoice::HalfRays => Self::HalfRays,
-            VoteChoice::Majority => Self::Majority,
-            VoteChoice::Paper => Self::Paper,
-        }
-    }
-}
-
-/// `--method` of `sdf`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum MethodChoice {
-    /// To the nearest triangle, exactly
-    Exact,
-    /// The field that repairs are made from: smooth where the surface is broken, extended by fast marching
-    Robust,
-}
-
-impl From<MethodChoice> for DistanceMethod {
-    fn from(choice: MethodChoice) -> Self {
-        match choice {
-            MethodChoice::Exact => Self::Exact,
-            MethodChoice::Robust => Self::Robust,
-        }
-    }
-}
-
-/// `--sign` of `sdf`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum SignChoice {
-    /// The votes of the rays, as in a repair
-    Votes,
-    /// The angle-weighted normal at the nearest point, for closed surfaces
-    Pseudonormal,
-    /// The generalised winding number
-    Winding,
-}
-
-impl From<SignChoice> for DistanceSign {
-    fn from(choice: SignChoice) -> Self {
-        match choice {
-            SignChoice::Votes => Self::Votes,
-            SignChoice::Pseudonormal => Self::Pseudonormal,
-            SignChoice::Winding => Self::Winding,
-        }
-    }
-}
-
-/// `--edges` of `render`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum EdgeChoice {
-    /// None
-    None,
-    /// Those where the surface turns sharply
-    Sharp,
-    /// All
-    All,
-}
-
-/// `--fail-on` of `inspect`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Defect {
-    /// Edges with only one triangle
-    Open,
-    /// Edges or vertices where more than one sheet meets
-    Nonmanifold,
-    /// Neighbours that disagree about which side is outside
-    Inconsistent,
-    /// Triangles without area
-    Degenerate,
-    /// Triangles that are there twice
-    Duplicate,
-    /// Triangles that cut others
-    #[value(name = "self")]
-    SelfIntersecting,
-    /// A volume below zero
-    InsideOut,
-    /// Any of these
-    Any,
 }
 
 #[cfg(test)]

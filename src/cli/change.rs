@@ -12,7 +12,9 @@ use super::session::Session;
 use super::words::{self, UnitName};
 use crate::mesh::TriMesh;
 use crate::morphology::{Canal, Operation};
-use crate::pipeline::{self, CanalOptions, CanalReport, MorphologyOptions, Options, Outcome, Remove};
+use crate::pipeline::{
+    self, CanalOptions, CanalReport, MorphologyOptions, Options, Outcome, Remove, SheetSide, ThickenOptions,
+};
 
 /// A change, as asked for.
 #[derive(Debug, Clone)]
@@ -32,6 +34,13 @@ pub enum Change {
         max_diameter: Length,
         /// Which are filled; `None`: they are listed.
         remove: Option<RemoveChoice>,
+    },
+    /// Let thin walls and open sheets grow.
+    Thicken {
+        /// The least thickness.
+        least: Length,
+        /// Where sheets grow.
+        side: SheetSide,
     },
 }
 
@@ -105,6 +114,13 @@ impl Change {
                 };
                 let found = pipeline::canals(mesh, &CanalOptions { max_diameter, remove, solid }, progress);
                 Ok(found.map(|found| Changed { outcome: found.outcome, canal_of: found.canal_of }))
+            }
+            Self::Thicken { least, side } => {
+                let least = least.resolve(scale)?;
+                report.options["least"] = json!(least);
+                report.options["side"] = json!(side);
+                let options = ThickenOptions { least, side: *side, solid };
+                Ok(pipeline::thicken(mesh, &options, progress).map(Changed::from))
             }
         }
     }

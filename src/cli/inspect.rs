@@ -2,13 +2,17 @@
 
 use serde_json::json;
 
-use super::args::{Defect, InspectArgs};
+use super::args::InspectArgs;
+use super::choices::Defect;
 use super::exit::{Exit, Failure};
 use super::input::{self, Input};
+use super::length::Scale;
 use super::report::RunReport;
 use super::session::Session;
 use super::{summary, words};
-use crate::mesh::{ValidateOptions, Validity, validate};
+use crate::io::Unit;
+use crate::mesh::{Bounds, ValidateOptions, Validity, validate};
+use crate::pipeline::{self, LengthsReport, Options, ThicknessReport, VoxelSize};
 
 /// Looks at one file and prints a table.
 pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
@@ -22,9 +26,15 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
     report.warnings.extend(summary::size_doubts(&input.loaded, unit));
     report.options = json!({ "unit": unit.map(|unit| unit.to_string()) });
     report.inputs = vec![super::report::InputEntry { validity: Some(validity.clone()), ..input.entry.clone() }];
+    if args.thickness {
+        report.thickness = Some(report.timed("thickness", |_| thickness(args, input, unit, session))?);
+    }
     session.clear_bar();
     if !args.common.json {
-        let mut text = summary::table(&summary::inspection(input, &validity, unit));
+        let mut rows = summary::inspection(input, &validity, unit);
+        let name = unit.map(|unit| unit.to_string());
+        rows.extend(report.thickness.iter().flat_map(|thickness| thickness_rows(thickness, name.as_deref())));
+        let mut text = summary::table(&rows);
         for warning in &report.warnings {
             text.push_str(&format!("note: {warning}\n"));
         }
@@ -35,6 +45,47 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
         return Ok(Exit::Done);
     }
     Err(Failure::new(Exit::Limit, format!("{} has {}, as --fail-on asks", input.label, words::list(&found))))
+}
+
+fn thickness(
+    args: &InspectArgs,
+    input: &Input,
+    unit: Option<Unit>,
+    session: &Session,
+) -> Result<ThicknessReport, Failure> {
+    let mesh = &input.loaded.mesh;
+    let diagonal = mesh.bounds().as_ref().map_or(0.0, Bounds::diagonal);
+    let voxel = match &args.voxel {
+        Some(length) => VoxelSize::Length(length.resolve(&Scale { unit, diagonal, voxel: None })?),
+        None => VoxelSize::Along(args.resolution),
+    };
+    let name = unit.map(|unit| unit.to_string());
+    let failed = |e| Failure::pipeline(&e, std::slice::from_ref(&input.label), name.as_deref(), args.voxel.is_some());
+    pipeline::thickness(mesh, &Options::new(voxel), &session.progress).map_err(failed)
+}
+
+fn thickness_rows(found: &ThicknessReport, unit: words::UnitName<'_>) -> Vec<summary::Row> {
+    let described = |lengths: &LengthsReport| {
+        if lengths.count == 0 {
+            return "none".to_string();
+        }
+        let [first, _, _, half, _, most] = lengths.percentiles.map(|length| words::length(length, unit));
+        let thin = words::percent((lengths.thin * lengths.count as f64).round() as usize, lengths.count);
+        format!("1 % under {first}, half under {half}, 95 % under {most}; {thin} under 2 voxels")
+    };
+    let mut rows = vec![("walls", described(&found.walls)), ("gaps", described(&found.gaps))];
+    if let (Some(voxel), Some(resolution)) = (found.voxel_that_keeps, found.resolution_that_keeps) {
+        let voxel = words::with_unit(&words::rounded_down(voxel), unit);
+        let kept = format!("a voxel of {voxel} (--resolution {resolution}) puts two into 99 % of the walls and gaps");
+        rows.push(("keeps", kept));
+    }
+    if found.silent > 0.0 {
+        rows.push((
+            "silent",
+            format!("{:.1} % of the rays met an open surface and were not counted", 100.0 * found.silent),
+        ));
+    }
+    rows
 }
 
 /// For formats with shared vertices: how many open edges only come from vertices stored apart.

@@ -3,6 +3,7 @@
 mod args;
 mod boolean;
 mod change;
+mod choices;
 mod compare;
 mod convert;
 mod csg;
@@ -74,6 +75,9 @@ fn dispatch(verb: &Verb) -> Exit {
         Verb::Close(args) => morphology("close", args, Operation::Close),
         Verb::Canals(args) => {
             solid("canals", &args.solid, &[&args.input], |session, report| morphology::canals(args, session, report))
+        }
+        Verb::Thicken(args) => {
+            solid("thicken", &args.solid, &[&args.input], |session, report| morphology::thicken(args, session, report))
         }
         Verb::Sdf(args) => run("sdf", &args.common, &[&args.input], args.output.as_deref(), |session, report| {
             sdf::run(args, session, report)

@@ -1,8 +1,9 @@
-//! `dilate`, `erode`, `open` and `close IN -o OUT --radius LEN`, and `canals IN --max-diameter LEN`.
+//! `dilate`, `erode`, `open` and `close IN -o OUT --radius LEN`, `canals IN --max-diameter LEN`, and
+//! `thicken IN -o OUT --min LEN`.
 
 use std::path::Path;
 
-use super::args::{CanalArgs, GrowArgs, MorphologyArgs, SolidArgs};
+use super::args::{CanalArgs, GrowArgs, MorphologyArgs, SolidArgs, ThickenArgs};
 use super::change::Change;
 use super::exit::{Exit, Failure};
 use super::report::RunReport;
@@ -34,6 +35,12 @@ pub fn canals(args: &CanalArgs, session: &Session, report: &mut RunReport) -> Re
         return Err(Failure::usage("without --remove the canals are only listed, and nothing is written to -o"));
     }
     let change = Change::Canals { max_diameter: args.max_diameter, remove: args.remove.clone() };
+    changed(&args.input, &change, &args.solid, session, report)
+}
+
+/// Lets the thin walls of one file grow.
+pub fn thicken(args: &ThickenArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
+    let change = Change::Thicken { least: args.min, side: args.side.into() };
     changed(&args.input, &change, &args.solid, session, report)
 }
 

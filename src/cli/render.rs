@@ -5,7 +5,8 @@ use std::path::Path;
 use glam::DVec3;
 use serde_json::json;
 
-use super::args::{EdgeChoice, RenderArgs};
+use super::args::RenderArgs;
+use super::choices::EdgeChoice;
 use super::exit::{Exit, Failure};
 use super::input::{self, is_stream};
 use super::output::{check_overwrite, write_stream};

@@ -11,7 +11,7 @@ use super::input::is_stream;
 use crate::compare::Comparison;
 use crate::io;
 use crate::mesh::Validity;
-use crate::pipeline::{DistancePlan, DistanceReport, Plan, Report, StageTime};
+use crate::pipeline::{DistancePlan, DistanceReport, Plan, Report, StageTime, ThicknessReport};
 
 /// Raised when a field changes its meaning or goes away; new fields do not raise it.
 pub const SCHEMA: u32 = 1;
@@ -45,6 +45,9 @@ pub struct RunReport {
     /// What `sdf` found and did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance: Option<DistanceReport>,
+    /// What `inspect --thickness` measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thickness: Option<ThicknessReport>,
     /// What `compare` measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
@@ -138,6 +141,7 @@ impl RunReport {
             plan: None,
             pipeline: None,
             distance: None,
+            thickness: None,
             comparison: None,
             output: None,
             warnings: Vec::new(),

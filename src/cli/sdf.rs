@@ -2,7 +2,8 @@
 
 use serde_json::json;
 
-use super::args::{SdfArgs, SignChoice};
+use super::args::SdfArgs;
+use super::choices::SignChoice;
 use super::exit::{Exit, Failure};
 use super::input::{self, Input, is_stream};
 use super::length::{BandChoice, Scale};

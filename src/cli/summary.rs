@@ -7,7 +7,7 @@ use super::words::{self, UnitName};
 use crate::io::{Loaded, Unit};
 use crate::mesh::Validity;
 use crate::morphology::Operation;
-use crate::pipeline::{Plan, Report};
+use crate::pipeline::{Plan, Report, ThickenReport};
 
 /// A label and what stands behind it; rows of one block are aligned.
 pub type Row = (&'static str, String);
@@ -142,11 +142,28 @@ fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
             "{word} {by}: volume {volume}; {} new (--map shows them)",
             words::plural(change.made, "triangle")
         ));
+    } else if let Some(thick) = &pipeline.thicken {
+        parts.push(thickened(thick, pipeline.closed_triangles, unit));
     } else if pipeline.closed_triangles > 0 {
         let triangles = words::plural(pipeline.closed_triangles, "triangle");
         parts.push(format!("{triangles} of the result close holes (--map shows them)"));
     }
     parts
+}
+
+fn thickened(thick: &ThickenReport, made: usize, unit: UnitName<'_>) -> String {
+    let least = words::length(thick.least, unit);
+    if thick.thin_area == 0.0 && thick.sheet_area == 0.0 {
+        return format!("nothing is thinner than {least}");
+    }
+    let sheets = if thick.sheet_area > 0.0 { " and open sheets" } else { "" };
+    let volume = if thick.volume_before > 0.0 {
+        format!("volume {}", words::percent_change(thick.volume_before, thick.volume_after))
+    } else {
+        "there was no solid before".into()
+    };
+    let made = words::plural(made, "triangle");
+    format!("walls{sheets} grown to {least}: {volume}; {made} new (--map shows them)")
 }
 
 /// The voxel size, and how many of them.

@@ -1,18 +1,19 @@
 //! Lengths of spans and gaps along the face directions: the evidence for walls too thin.
 
-use super::Spans;
+use super::{Hit, Spans};
+use crate::mesh::Plane;
 
 /// Spans and gaps shorter than this (voxels) may not survive the lattice.
 pub const THIN: f64 = 2.0;
 
-/// Span and gap lengths of the three face directions, in voxels.
+/// Span and gap lengths, in voxels.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Lengths {
     /// All spans, sorted.
     pub spans: Vec<f64>,
     /// Gaps between spans of one ray, sorted.
     pub gaps: Vec<f64>,
-    /// Spans that hold no voxel: the ray alone would lose them.
+    /// Spans that hold no voxel: the ray alone would lose them. Not counted by [`widths`].
     pub lost: usize,
 }
 
@@ -33,6 +34,33 @@ pub fn lengths(spans: &[Spans]) -> Lengths {
     lengths.spans.sort_unstable_by(f64::total_cmp);
     lengths.gaps.sort_unstable_by(f64::total_cmp);
     lengths
+}
+
+/// A ray counts for the width of a wall when both ends of its span look along it, to within 32°: one of the 13 directions
+/// does for any wall, and the rounding of a silhouette, which makes short spans on any shape, does not.
+const ALONG: f64 = 0.85;
+
+/// Widths, in voxels, of the walls and gaps that rays of any direction cross steeply: the length of a span times the cosine
+/// of the angle with the nearer normal. `planes` are those of the triangles, lattice coordinates.
+pub fn widths(spans: &[Spans], planes: &[Plane]) -> Lengths {
+    let mut widths = Lengths::default();
+    for spans in spans {
+        let way = spans.layers.direction.vector().as_dvec3();
+        let (length, unit) = (way.length(), way.normalize());
+        let width = |ends: &[Hit]| {
+            let cosine = ends.iter().map(|hit| planes[hit.triangle() as usize].normal.dot(unit).abs());
+            let cosine = cosine.fold(1.0, f64::min);
+            (cosine >= ALONG).then(|| (ends[1].depth - ends[0].depth) * length * cosine)
+        };
+        for ray in (0..spans.layers.ray_count()).filter(|&ray| !spans.is_silent(ray)) {
+            let hits = spans.layers.of(ray);
+            widths.spans.extend(hits.chunks_exact(2).filter_map(width));
+            widths.gaps.extend(hits.windows(2).skip(1).step_by(2).filter_map(width));
+        }
+    }
+    widths.spans.sort_unstable_by(f64::total_cmp);
+    widths.gaps.sort_unstable_by(f64::total_cmp);
+    widths
 }
 
 #[cfg(test)]

@@ -10,10 +10,12 @@
 mod canals;
 mod closed;
 mod offset;
+mod thin;
 
 pub use canals::{Canal, CanalKind, Canals, Region, canals};
 pub use closed::{Reached, closed, reached};
 pub use offset::{Body, Offset, offset};
+pub use thin::middles;
 
 use crate::progress::Stopped;
 use crate::sdf::exact::ExactError;

@@ -1,11 +1,13 @@
 //! One level of the distance to a solid, as a contour with its tangent planes.
 
+use std::sync::Arc;
+
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::MorphologyError;
 use crate::contour::{Contour, ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
-use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice};
+use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice};
 use crate::mesh::around::Around;
 use crate::mesh::{Feature, Plane, TriMesh};
 use crate::progress::Progress;
@@ -23,13 +25,15 @@ const MOST_STEPS: usize = 60;
 /// The surface is nearer than the distance in single precision times this.
 const LIKELY: f64 = 1.001;
 
-/// A solid that can be asked for its distance, or for the distance that keeps its edges sharp.
+/// A solid, or a sheet, that can be asked for its distance, or for the distance that keeps its edges sharp.
 pub struct Body<'a> {
     pub(super) mesh: &'a TriMesh,
     distance: ExactDistance,
     around: Around,
     /// How many times the offset a sharp edge may reach, at most; `None`: edges become round.
     mitre: Option<f64>,
+    /// Whether it encloses nothing: all its points are outside.
+    sheet: bool,
 }
 
 impl<'a> Body<'a> {
@@ -37,7 +41,13 @@ impl<'a> Body<'a> {
     /// sharp as far as this many times the offset from where they were, at least 1.
     pub fn new(mesh: &'a TriMesh, mitre: Option<f64>) -> Self {
         let distance = ExactDistance::of(mesh, PointSign::Pseudonormal);
-        Self { mesh, distance, around: Around::new(mesh), mitre: mitre.map(|limit| limit.max(1.0)) }
+        Self { mesh, distance, around: Around::new(mesh), mitre: mitre.map(|limit| limit.max(1.0)), sheet: false }
+    }
+
+    /// A sheet without an inside, whatever its triangles are; only positive levels have a surface.
+    pub fn sheet(mesh: &'a TriMesh) -> Self {
+        let distance = ExactDistance::of(mesh, PointSign::Unsigned);
+        Self { mesh, distance, around: Around::new(mesh), mitre: None, sheet: true }
     }
 
     /// The plain distance.
@@ -145,6 +155,10 @@ fn field(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) ->
     let reach = level_h.abs() * body.mitre.unwrap_or(1.0);
     let options = ExactOptions { band: Band::Within(reach + MARGIN), max_memory: None };
     let mut grid = exact(body.mesh, lattice, Sign::Pseudonormal, &options, progress)?;
+    if body.sheet {
+        grid.values.par_iter_mut().flatten().for_each(|value| *value = value.abs());
+        grid.bricks = Arc::new(Bricks::new(grid.bricks.active().iter().copied()));
+    }
     let bricks = grid.bricks.clone();
     if body.mitre.is_some() {
         let undecided = |d: f64| d * level > 0.0 && d.abs() >= level_h.abs() && d.abs() <= reach + 1.0;

@@ -10,6 +10,8 @@ mod refine;
 mod report;
 mod solid;
 mod stages;
+mod thicken;
+mod thickness;
 
 pub use canals::{CanalOptions, CanalOutcome, CanalReport, Remove, canals};
 pub use colours::{carry_colours, classes};
@@ -20,6 +22,8 @@ pub use distance::{
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
 pub use plan::plan;
 pub use report::{LdiReport, Report, StageTime, ThinReport};
+pub use thicken::{SheetSide, ThickenOptions, ThickenReport, thicken};
+pub use thickness::{LengthsReport, ThicknessReport, thickness};
 
 use rayon::prelude::*;
 

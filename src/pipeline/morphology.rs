@@ -50,8 +50,8 @@ pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progr
     let mut stages = stages::Stages::new(progress);
     let run = Run { solid: &outcome.mesh, h: outcome.lattice.h, options, progress };
     let made = match options.operation {
-        Operation::Dilate => run.one_way(radius, &mut stages)?,
-        Operation::Erode => run.one_way(-radius, &mut stages)?,
+        Operation::Dilate => run.one_way(&Body::new(run.solid, options.mitre), radius, &mut stages)?,
+        Operation::Erode => run.one_way(&Body::new(run.solid, options.mitre), -radius, &mut stages)?,
         Operation::Close => run.there_and_back(radius, &mut stages)?,
         Operation::Open => run.there_and_back(-radius, &mut stages)?,
     };
@@ -66,7 +66,7 @@ pub(super) fn usable(radius: f64) -> Result<f64, Error> {
 
 /// The fitted surface and, for each of its triangles, the solid's triangle that it lies on.
 pub(super) struct Made {
-    surface: Surface,
+    pub surface: Surface,
     own: Vec<Option<u32>>,
     fit: Option<FitReport>,
 }
@@ -79,11 +79,10 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn one_way(&self, level: f64, stages: &mut stages::Stages<'_>) -> Result<Made, Error> {
+    pub(super) fn one_way(&self, body: &Body<'_>, level: f64, stages: &mut stages::Stages<'_>) -> Result<Made, Error> {
         stages.begin("offset")?;
-        let body = Body::new(self.solid, self.options.mitre);
         let lattice = self.lattice(level.max(0.0) * self.options.mitre.unwrap_or(1.0))?;
-        let offset = offset(&body, level, &lattice, self.progress).map_err(|e| self.error(e))?;
+        let offset = offset(body, level, &lattice, self.progress).map_err(|e| self.error(e))?;
         stages.begin("fit")?;
         let off = |p| (body.at(p, level.abs() + self.h).0 - level).abs();
         self.fitted((offset, &lattice), (&TriMesh::default(), &off), Evidence::default(), self.options.solid.fit, level)

@@ -123,7 +123,8 @@ impl Input {
     }
 }
 
-fn area(mesh: &TriMesh) -> f64 {
+/// Square model units.
+pub(super) fn area(mesh: &TriMesh) -> f64 {
     let double = |t: usize| {
         let [a, b, c] = mesh.corners(t);
         (b - a).cross(c - a).length()

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{CanalReport, MorphologyReport};
+use super::{CanalReport, MorphologyReport, ThickenReport};
 
 use crate::fit::FitReport;
 use crate::orient::OrientReport;
@@ -27,6 +27,8 @@ pub struct Report {
     pub fit: Option<FitReport>,
     /// Dilation, erosion, closing or opening; `None` without.
     pub morphology: Option<MorphologyReport>,
+    /// Walls that were too thin; `None` where none were looked for.
+    pub thicken: Option<ThickenReport>,
     /// Canals that were listed; `None` where none were looked for.
     pub canals: Option<CanalReport>,
     /// Triangles of the result that close holes, or that morphology has made.

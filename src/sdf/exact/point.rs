@@ -22,6 +22,8 @@ pub enum PointSign {
     /// Inside above a winding number of ½: for soups. The number errs by up to 0.02, which matters only
     /// near the middle of what closes a hole.
     Winding(WindingTree),
+    /// No point is inside: the plain distance from what encloses nothing.
+    Unsigned,
 }
 
 /// The signed distance to a mesh at any point.
@@ -65,7 +67,7 @@ impl ExactDistance {
         let signed = match &self.sign {
             PointSign::Pseudonormal => self.normals.signed(p, &closest),
             PointSign::Winding(tree) if tree.winding(p) > 0.5 => -closest.distance,
-            PointSign::Winding(_) => closest.distance,
+            PointSign::Winding(_) | PointSign::Unsigned => closest.distance,
         };
         let away = (p - closest.point).normalize_or_zero();
         let gradient = match signed {

@@ -1,0 +1,142 @@
+//! Values that flags choose from.
+
+use clap::ValueEnum;
+
+use crate::orient::OrientMode;
+use crate::pipeline::{DistanceMethod, DistanceSign, SheetSide};
+use crate::vote::VoteRule;
+
+/// `--orient`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum OrientChoice {
+    /// Turn triangles so that patches agree and the rays enter before they leave
+    Auto,
+    /// Trust the file
+    Keep,
+}
+
+impl From<OrientChoice> for OrientMode {
+    fn from(choice: OrientChoice) -> Self {
+        match choice {
+            OrientChoice::Auto => Self::Auto,
+            OrientChoice::Keep => Self::Keep,
+        }
+    }
+}
+
+/// `--vote`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum VoteChoice {
+    /// The rays where ten or more balance and agree; elsewhere the winding number
+    Winding,
+    /// The majority of the rays that balance; where they are few, their halves
+    HalfRays,
+    /// The majority of the rays that balance
+    Majority,
+    /// More than half of all 13 rays
+    Paper,
+}
+
+impl From<VoteChoice> for VoteRule {
+    fn from(choice: VoteChoice) -> Self {
+        match choice {
+            VoteChoice::Winding => Self::Winding,
+            VoteChoice::HalfRays => Self::HalfRays,
+            VoteChoice::Majority => Self::Majority,
+            VoteChoice::Paper => Self::Paper,
+        }
+    }
+}
+
+/// `--method` of `sdf`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MethodChoice {
+    /// To the nearest triangle, exactly
+    Exact,
+    /// The field that repairs are made from: smooth where the surface is broken, extended by fast marching
+    Robust,
+}
+
+impl From<MethodChoice> for DistanceMethod {
+    fn from(choice: MethodChoice) -> Self {
+        match choice {
+            MethodChoice::Exact => Self::Exact,
+            MethodChoice::Robust => Self::Robust,
+        }
+    }
+}
+
+/// `--sign` of `sdf`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SignChoice {
+    /// The votes of the rays, as in a repair
+    Votes,
+    /// The angle-weighted normal at the nearest point, for closed surfaces
+    Pseudonormal,
+    /// The generalised winding number
+    Winding,
+}
+
+impl From<SignChoice> for DistanceSign {
+    fn from(choice: SignChoice) -> Self {
+        match choice {
+            SignChoice::Votes => Self::Votes,
+            SignChoice::Pseudonormal => Self::Pseudonormal,
+            SignChoice::Winding => Self::Winding,
+        }
+    }
+}
+
+/// `--edges` of `render`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum EdgeChoice {
+    /// None
+    None,
+    /// Those where the surface turns sharply
+    Sharp,
+    /// All
+    All,
+}
+
+/// `--fail-on` of `inspect`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Defect {
+    /// Edges with only one triangle
+    Open,
+    /// Edges or vertices where more than one sheet meets
+    Nonmanifold,
+    /// Neighbours that disagree about which side is outside
+    Inconsistent,
+    /// Triangles without area
+    Degenerate,
+    /// Triangles that are there twice
+    Duplicate,
+    /// Triangles that cut others
+    #[value(name = "self")]
+    SelfIntersecting,
+    /// A volume below zero
+    InsideOut,
+    /// Any of these
+    Any,
+}
+
+/// `--side` of `thicken`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SideChoice {
+    /// Half of the thickness on either side
+    Both,
+    /// Where the triangles' normals point
+    Front,
+    /// On the other side
+    Back,
+}
+
+impl From<SideChoice> for SheetSide {
+    fn from(choice: SideChoice) -> Self {
+        match choice {
+            SideChoice::Both => Self::Both,
+            SideChoice::Front => Self::Front,
+            SideChoice::Back => Self::Back,
+        }
+    }
+}

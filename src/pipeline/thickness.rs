@@ -1,0 +1,88 @@
+//! How thick the walls of a mesh are, and how wide the gaps between them.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{Error, Options, plan, prepare};
+use crate::ldi::{Expression, Spans, THIN, ldis, spans, widths};
+use crate::mesh::TriMesh;
+use crate::progress::{Progress, Stopped};
+
+/// The widths of walls and gaps, and the voxel that holds them. Model units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ThicknessReport {
+    /// Voxel spacing of the rays.
+    pub voxel: f64,
+    /// Walls: pieces of rays inside the solid whose ends both look along the ray.
+    pub walls: LengthsReport,
+    /// Gaps between two walls.
+    pub gaps: LengthsReport,
+    /// Share of the rays that abstain because they meet an open surface.
+    pub silent: f64,
+    /// A voxel of which 99 % of the walls and of the gaps are two or more thick; `None` without any.
+    pub voxel_that_keeps: Option<f64>,
+    /// The voxels along the longest side that this makes.
+    pub resolution_that_keeps: Option<u32>,
+}
+
+/// How some lengths are distributed, model units.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct LengthsReport {
+    /// How many there are.
+    pub count: usize,
+    /// The smallest.
+    pub least: f64,
+    /// 1, 5, 25, 50, 75 and 95 % are not longer than these.
+    pub percentiles: [f64; 6],
+    /// The longest.
+    pub most: f64,
+    /// Share that is under two voxels of the rays.
+    pub thin: f64,
+}
+
+/// The percentiles of a [`LengthsReport`].
+pub const PERCENTILES: [usize; 6] = [1, 5, 25, 50, 75, 95];
+
+/// Measures the walls and gaps of `input` along the rays of all 13 directions.
+///
+/// # Errors
+/// Those of [`super::boolean`] up to the rays.
+pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Result<ThicknessReport, Error> {
+    let operands = std::slice::from_ref(input);
+    let bounds = prepare::bounds(operands)?;
+    let lattice = prepare::lattice(&bounds, options.voxel)?;
+    plan::check_limits(operands, &lattice, options)?;
+    progress.stage("orient")?;
+    let mut soup = prepare::prepare(operands, options.orient, progress)?;
+    progress.stage("ldi")?;
+    let mut layers = ldis(&soup.mesh, &lattice, 1, progress)?;
+    soup.turn_patches(&mut layers, options.orient, progress)?;
+    progress.stage("spans")?;
+    let rays: usize = layers.iter().map(|l| l.offsets.windows(2).filter(|w| w[1] > w[0]).count()).sum();
+    let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, &Expression::Operand(0)));
+    let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
+    let found = widths(&spans, &soup.planes(&lattice));
+    let silent: usize = spans.iter().map(|spans| spans.silent_rays).sum();
+    let walls = LengthsReport::of(&found.spans, lattice.h);
+    let gaps = LengthsReport::of(&found.gaps, lattice.h);
+    let thinnest = [&walls, &gaps].into_iter().filter(|l| l.count > 0).map(|l| l.percentiles[0]).reduce(f64::min);
+    let voxel_that_keeps = thinnest.filter(|&width| width > 0.0).map(|width| width / THIN);
+    let resolution_that_keeps = voxel_that_keeps.map(|voxel| (bounds.size().max_element() / voxel).ceil() as u32);
+    let silent = silent as f64 / rays.max(1) as f64;
+    Ok(ThicknessReport { voxel: lattice.h, walls, gaps, silent, voxel_that_keeps, resolution_that_keeps })
+}
+
+impl LengthsReport {
+    /// Of sorted lengths in h.
+    fn of(sorted: &[f64], h: f64) -> Self {
+        let (Some(&least), Some(&most)) = (sorted.first(), sorted.last()) else { return Self::default() };
+        let at = |percent: usize| sorted[(sorted.len() * percent / 100).min(sorted.len() - 1)] * h;
+        Self {
+            count: sorted.len(),
+            least: least * h,
+            percentiles: PERCENTILES.map(at),
+            most: most * h,
+            thin: sorted.partition_point(|&length| length < THIN) as f64 / sorted.len() as f64,
+        }
+    }
+}
