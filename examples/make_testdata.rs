@@ -42,6 +42,8 @@ pub fn files() -> Vec<(&'static str, Vec<u8>)> {
         ("thin_plate.stl", binary_stl(&cuboid(DVec3::ZERO, dvec3(10.0, 4.0, 0.04)))),
         ("monkey_saddle.off", off(&monkey_saddle())),
         ("broken_mug.obj", obj(&broken_mug())),
+        ("bored_block.off", off(&bored_block())),
+        ("thin_parts.obj", obj(&thin_parts())),
     ]
 }
 
@@ -173,6 +175,60 @@ fn monkey_saddle() -> TriMesh {
         body.triangles.extend([[a, below + b, b], [a, below + a, below + b]]);
     }
     body
+}
+
+/// Diameters of the bores of [`bored_block`].
+const BORES: [f64; 5] = [0.6, 1.0, 1.6, 2.4, 3.6];
+
+/// A block of 30 x 6 x 8 with five bores through it, as a soup of plates with round holes and of tubes.
+fn bored_block() -> TriMesh {
+    const SIDES: usize = 32;
+    let mut block = TriMesh::default();
+    for (cell, diameter) in BORES.into_iter().enumerate() {
+        let middle = dvec3(6.0 * cell as f64 + 3.0, 3.0, 0.0);
+        let round = |u: f64, z: f64| {
+            let angle = TAU * (u - 0.375);
+            middle + dvec3(angle.cos(), angle.sin(), 0.0) * diameter / 2.0 + DVec3::Z * z
+        };
+        let square = |u: f64, z: f64| {
+            let corner =
+                |n: usize| [dvec3(-3.0, -3.0, z), dvec3(3.0, -3.0, z), dvec3(3.0, 3.0, z), dvec3(-3.0, 3.0, z)][n % 4];
+            let side = (4.0 * u) as usize;
+            middle + corner(side).lerp(corner(side + 1), 4.0 * u - side as f64)
+        };
+        let ring = |z: f64| grid(SIDES, 1, Wrap::First, |u, v| square(u, z).lerp(round(u, z), v));
+        block.append(&ring(8.0));
+        block.append(&turned_over(ring(0.0)));
+        block.append(&turned_over(grid(SIDES, 1, Wrap::First, |u, v| round(u, 8.0 * v))));
+    }
+    for side in 0..4 {
+        let ends = [dvec3(0.0, 0.0, 0.0), dvec3(30.0, 0.0, 0.0), dvec3(30.0, 6.0, 0.0), dvec3(0.0, 6.0, 0.0)];
+        let (from, to) = (ends[side], ends[(side + 1) % 4]);
+        let pieces = [BORES.len(), 1][side % 2] * SIDES / 4;
+        block.append(&grid(pieces, 1, Wrap::None, |u, v| from.lerp(to, u) + DVec3::Z * 8.0 * v));
+    }
+    block
+}
+
+/// A block that carries plates and a rod, most of them thin.
+fn thin_parts() -> Vec<(&'static str, TriMesh)> {
+    let plate = |x: f64, width: f64| cuboid(dvec3(x, 3.0, 9.0), dvec3(x + width, 17.0, 18.0));
+    let mut rod = grid(24, 1, Wrap::First, |u, v| {
+        dvec3(1.5 + 0.3 * (TAU * u).cos(), 1.5 + 0.3 * (TAU * u).sin(), 9.0 + 11.0 * v)
+    });
+    for (z, up) in [(9.0, false), (20.0, true)] {
+        let disc = grid(24, 1, Wrap::First, |u, v| {
+            dvec3(1.5 + 0.3 * (1.0 - v) * (TAU * u).cos(), 1.5 + 0.3 * (1.0 - v) * (TAU * u).sin(), z)
+        });
+        rod.append(&without_slivers(if up { disc } else { turned_over(disc) }));
+    }
+    vec![
+        ("block", cuboid(DVec3::ZERO, dvec3(20.0, 20.0, 10.0))),
+        ("thin plate", plate(4.0, 0.3)),
+        ("plate", plate(9.0, 0.6)),
+        ("thick plate", plate(14.0, 3.0)),
+        ("rod", rod),
+    ]
 }
 
 /// A mug as people find them: a wall that does not close at its seam, a floor that only pokes

@@ -78,6 +78,7 @@ fn round_offsets_lie_at_their_distance_and_grow_with_it() {
     for (name, mesh, within) in [
         ("box", tilted(cuboid(DVec3::ZERO, DVec3::new(1.0, 0.8, 0.6))), 0.1),
         ("torus", torus(96, 48), 0.1),
+        ("ball", ball(), 0.1),
         ("angle", angle(), 0.2),
     ] {
         let mut before = 0.0;
@@ -143,6 +144,32 @@ fn erosion_that_leaves_nothing_says_so() {
     }
     let bad = morphology(&torus(48, 24), &options(Close, 0.0), &Progress::none());
     assert!(matches!(bad, Err(Error::VoxelSize { .. })));
+}
+
+/// A ball of radius 1, its sides a sixty-fourth of its girth.
+fn ball() -> TriMesh {
+    const AROUND: u32 = 64;
+    const ROWS: u32 = 32;
+    let point = |row: u32, k: u32| {
+        let (polar, angle) = (
+            f64::from(row) * std::f64::consts::PI / f64::from(ROWS),
+            f64::from(k) * std::f64::consts::TAU / f64::from(AROUND),
+        );
+        DVec3::new(polar.sin() * angle.cos(), polar.sin() * angle.sin(), polar.cos())
+    };
+    let mut positions = vec![DVec3::Z, -DVec3::Z];
+    positions.extend((1..ROWS).flat_map(|row| (0..AROUND).map(move |k| point(row, k))));
+    let at = |row: u32, k: u32| match row {
+        0 => 0,
+        ROWS => 1,
+        _ => 2 + (row - 1) * AROUND + k % AROUND,
+    };
+    let quads = (0..ROWS).flat_map(|row| (0..AROUND).map(move |k| (row, k)));
+    let triangles = quads.flat_map(|(row, k)| {
+        let [a, b, c, d] = [at(row, k), at(row + 1, k), at(row + 1, k + 1), at(row, k + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    TriMesh { triangles: triangles.filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]).collect(), positions }
 }
 
 /// A cylinder along z of `sides` sides.

@@ -13,7 +13,7 @@ use super::words::{self, UnitName};
 use crate::mesh::TriMesh;
 use crate::morphology::{Canal, Operation};
 use crate::pipeline::{
-    self, CanalOptions, CanalReport, MorphologyOptions, Options, Outcome, Remove, SheetSide, ThickenOptions,
+    self, CanalOptions, CanalReport, MorphologyOptions, Options, Outcome, Plan, Remove, SheetSide, ThickenOptions,
 };
 
 /// A change, as asked for.
@@ -86,6 +86,20 @@ impl Change {
         !matches!(self, Self::Canals { remove: None, .. })
     }
 
+    /// What it would cost for `mesh`. The outer error is one of usage.
+    pub fn plan(
+        &self,
+        mesh: &TriMesh,
+        options: &Options,
+        scale: &Scale,
+    ) -> Result<Result<Plan, pipeline::Error>, Failure> {
+        Ok(match self.resolved(options, scale)? {
+            Resolved::Morphology(options) => pipeline::plan_morphology(mesh, &options),
+            Resolved::Canals(options) => pipeline::plan_canals(mesh, &options),
+            Resolved::Thicken(options) => pipeline::plan_thicken(mesh, &options),
+        })
+    }
+
     /// Makes it of `mesh`. The outer error is one of usage.
     pub fn apply(
         &self,
@@ -95,35 +109,56 @@ impl Change {
         session: &Session,
         report: &mut RunReport,
     ) -> Result<Result<Changed, pipeline::Error>, Failure> {
-        let (solid, progress) = (options.clone(), &session.progress);
-        match self {
-            Self::Morphology { operation, radius, mitre } => {
-                report.options["radius"] = json!(radius.resolve(scale)?);
-                report.options["mitre"] = json!(mitre);
-                let radius = radius.resolve(scale)?;
-                let options = MorphologyOptions { operation: *operation, radius, mitre: *mitre, solid };
-                Ok(pipeline::morphology(mesh, &options, progress).map(Changed::from))
+        let progress = &session.progress;
+        Ok(match self.resolved(options, scale)? {
+            Resolved::Morphology(options) => {
+                report.options["radius"] = json!(options.radius);
+                report.options["mitre"] = json!(options.mitre);
+                pipeline::morphology(mesh, &options, progress).map(Changed::from)
             }
+            Resolved::Canals(options) => {
+                report.options["max_diameter"] = json!(options.max_diameter);
+                let found = pipeline::canals(mesh, &options, progress);
+                found.map(|found| Changed { outcome: found.outcome, canal_of: found.canal_of })
+            }
+            Resolved::Thicken(options) => {
+                report.options["least"] = json!(options.least);
+                report.options["side"] = json!(options.side);
+                pipeline::thicken(mesh, &options, progress).map(Changed::from)
+            }
+        })
+    }
+
+    /// The options of its pipeline, with lengths in model units.
+    fn resolved(&self, options: &Options, scale: &Scale) -> Result<Resolved, Failure> {
+        let solid = options.clone();
+        Ok(match self {
+            Self::Morphology { operation, radius, mitre } => Resolved::Morphology(MorphologyOptions {
+                operation: *operation,
+                radius: radius.resolve(scale)?,
+                mitre: *mitre,
+                solid,
+            }),
             Self::Canals { max_diameter, remove } => {
-                let max_diameter = max_diameter.resolve(scale)?;
-                report.options["max_diameter"] = json!(max_diameter);
                 let remove = match remove {
                     None => Remove::None,
                     Some(RemoveChoice::All) => Remove::All,
                     Some(RemoveChoice::These(numbers)) => Remove::These(numbers.clone()),
                 };
-                let found = pipeline::canals(mesh, &CanalOptions { max_diameter, remove, solid }, progress);
-                Ok(found.map(|found| Changed { outcome: found.outcome, canal_of: found.canal_of }))
+                Resolved::Canals(CanalOptions { max_diameter: max_diameter.resolve(scale)?, remove, solid })
             }
             Self::Thicken { least, side } => {
-                let least = least.resolve(scale)?;
-                report.options["least"] = json!(least);
-                report.options["side"] = json!(side);
-                let options = ThickenOptions { least, side: *side, solid };
-                Ok(pipeline::thicken(mesh, &options, progress).map(Changed::from))
+                Resolved::Thicken(ThickenOptions { least: least.resolve(scale)?, side: *side, solid })
             }
-        }
+        })
     }
+}
+
+/// The options of one of the pipelines.
+enum Resolved {
+    Morphology(MorphologyOptions),
+    Canals(CanalOptions),
+    Thicken(ThickenOptions),
 }
 
 /// Prints the canals when that is all that was asked for.

@@ -8,12 +8,12 @@ use serde_json::json;
 use super::args::RenderArgs;
 use super::choices::EdgeChoice;
 use super::exit::{Exit, Failure};
-use super::input::{self, is_stream};
+use super::input::{self, Input, is_stream};
 use super::output::{check_overwrite, write_stream};
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
 use crate::io;
-use crate::picture::{EdgeDrawing, Image, RenderError, RenderOptions, View, render, render_pair};
+use crate::picture::{EdgeDrawing, Image, Painted, RenderError, RenderOptions, View, render, render_pair};
 
 /// Draws one mesh, or two on one sheet.
 pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
@@ -30,9 +30,9 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
     });
     session.progress.stage("draw")?;
     let image = report.timed("draw", |_| match inputs.as_slice() {
-        [before, after, ..] => render_pair(&before.loaded.mesh, &after.loaded.mesh, &options, &session.progress)
+        [before, after, ..] => render_pair(painted(before), painted(after), &options, &session.progress)
             .map(|images| Image::beside(&images)),
-        [one] => render(&one.loaded.mesh, &options, &session.progress),
+        [one] => render(painted(one), &options, &session.progress),
         [] => Err(RenderError::Empty),
     });
     let image = image.map_err(failure)?;
@@ -58,6 +58,10 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
         validity: None,
     });
     Ok(Exit::Done)
+}
+
+fn painted(input: &Input) -> Painted<'_> {
+    Painted { mesh: &input.loaded.mesh, colours: input.loaded.colours.as_ref() }
 }
 
 fn options(args: &RenderArgs) -> RenderOptions {

@@ -57,7 +57,7 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
     report.options = resolved(args, unit, &options);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     if args.plan {
-        return plan(inputs, &options, unit, args, report);
+        return plan(job, inputs, (&options, &scale), report);
     }
     target.iter_mut().for_each(|target| target.set_unit(unit));
     make(job, &inputs, (&options, &scale), target.as_ref(), session, report)
@@ -135,14 +135,18 @@ fn failure(error: &pipeline::Error, inputs: &[Input], unit: Option<Unit>, args: 
 }
 
 fn plan(
+    job: &Job<'_>,
     mut inputs: Vec<Input>,
-    options: &Options,
-    unit: Option<Unit>,
-    args: &SolidArgs,
+    (options, scale): (&Options, &Scale),
     report: &mut RunReport,
 ) -> Result<Exit, Failure> {
+    let (args, unit) = (job.args, scale.unit);
     let meshes: Vec<TriMesh> = inputs.iter_mut().map(|input| std::mem::take(&mut input.loaded.mesh)).collect();
-    let plan = pipeline::plan(&meshes, options).map_err(|e| failure(&e, &inputs, unit, args))?;
+    let plan = match job.change {
+        None => pipeline::plan(&meshes, options),
+        Some(change) => change.plan(&meshes[0], options, scale)?,
+    };
+    let plan = plan.map_err(|e| failure(&e, &inputs, unit, args))?;
     report.plan = Some(PlanEntry::Solid(plan));
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());

@@ -129,7 +129,11 @@ fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
         };
         parts.push(format!("{points} set on edges and corners{given_up}"));
     }
-    if let Some(change) = &pipeline.morphology {
+    if let Some(canals) = pipeline.canals.as_ref().filter(|canals| !canals.removed.is_empty()) {
+        let volume = pipeline.morphology.as_ref().map(|m| words::percent_change(m.volume_before, m.volume_after));
+        let (filled, all) = (words::count(canals.removed.len()), words::plural(canals.canals.len(), "canal"));
+        parts.push(format!("{filled} of {all} filled (--map shows where): volume {}", volume.unwrap_or_default()));
+    } else if let Some(change) = &pipeline.morphology {
         let by = words::length(change.radius, unit);
         let word = match change.operation {
             Operation::Dilate => "grown by",

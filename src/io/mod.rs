@@ -42,6 +42,7 @@ use std::path::Path;
 
 use crate::mesh::TriMesh;
 
+pub(crate) use colour::linear_from_srgb;
 pub use colour::{Carried, Colours, Rgba};
 pub use error::{Place, ReadError, ReadProblem, WriteError, WriteProblem};
 pub use format::{Format, UnknownFormat};

@@ -34,6 +34,16 @@ pub enum Operation {
     Open,
 }
 
+impl Operation {
+    /// Offsets that it takes.
+    pub fn offsets(self) -> u32 {
+        match self {
+            Self::Dilate | Self::Erode => 1,
+            Self::Close | Self::Open => 2,
+        }
+    }
+}
+
 /// Why there is no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MorphologyError {

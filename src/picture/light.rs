@@ -63,7 +63,7 @@ pub(super) fn shade(scene: &Scene, hit: Hit, [x, y]: [f32; 2], darkness: f32) ->
     let (n, facing) = normal_at(scene, t, x, y);
     let base = match (scene.marked[t], facing) {
         (true, _) => MARKED,
-        (_, true) => FRONT,
+        (_, true) => painted(scene, t, x, y).unwrap_or(FRONT),
         (_, false) => BACK,
     };
     let lit = |(from, strength): (Vec3, f32)| {
@@ -76,6 +76,13 @@ pub(super) fn shade(scene: &Scene, hit: Hit, [x, y]: [f32; 2], darkness: f32) ->
     let half = (KEY.0.normalize() + Vec3::Z).normalize();
     let gloss = 0.10 * n.dot(half).max(0.0).powi(40) * open;
     Rgb(base * diffuse + Vec3::splat(gloss))
+}
+
+/// The front side's own colour at a visible point.
+fn painted(scene: &Scene, t: usize, x: f32, y: f32) -> Option<Vec3> {
+    let [a, b, c] = *scene.paint.get(t)?;
+    let w = weights(&scene.corners[t], x, y);
+    Some((a * w[0] + b * w[1] + c * w[2]).clamp(Vec3::ZERO, Vec3::ONE))
 }
 
 /// The normal on the viewer's side at a visible point, and whether the triangle faces the viewer.

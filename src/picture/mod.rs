@@ -17,6 +17,7 @@ use rayon::prelude::*;
 pub use camera::View;
 pub use image::Image;
 
+use crate::io::Colours;
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
 use camera::Camera;
@@ -117,22 +118,43 @@ pub enum RenderError {
     },
 }
 
-/// Draws `mesh`, as large as the image allows. Front sides (counter-clockwise) are grey, back sides, which an intact solid
-/// never shows, rust red.
-pub fn render(mesh: &TriMesh, options: &RenderOptions, progress: &Progress) -> Result<Image, RenderError> {
-    let camera = camera_for(&[mesh], options)?;
+/// A mesh, and the colours of its front sides.
+#[derive(Debug, Clone, Copy)]
+pub struct Painted<'a> {
+    /// The mesh.
+    pub mesh: &'a TriMesh,
+    /// Its colours; alpha does not count. `None`: grey.
+    pub colours: Option<&'a Colours>,
+}
+
+impl<'a> From<&'a TriMesh> for Painted<'a> {
+    fn from(mesh: &'a TriMesh) -> Self {
+        Self { mesh, colours: None }
+    }
+}
+
+/// Draws a mesh, as large as the image allows. Front sides (counter-clockwise) have their colours, or are grey; back sides,
+/// which an intact solid never shows, are rust red.
+pub fn render<'a>(
+    mesh: impl Into<Painted<'a>>,
+    options: &RenderOptions,
+    progress: &Progress,
+) -> Result<Image, RenderError> {
+    let mesh = mesh.into();
+    let camera = camera_for(&[mesh.mesh], options)?;
     draw(mesh, &camera, options, progress)
 }
 
 /// Draws two meshes with the same camera, so that the images can be laid over each other. A mesh without
 /// triangles gives an empty image.
-pub fn render_pair(
-    before: &TriMesh,
-    after: &TriMesh,
+pub fn render_pair<'a>(
+    before: impl Into<Painted<'a>>,
+    after: impl Into<Painted<'a>>,
     options: &RenderOptions,
     progress: &Progress,
 ) -> Result<[Image; 2], RenderError> {
-    let camera = camera_for(&[before, after], options)?;
+    let (before, after) = (before.into(), after.into());
+    let camera = camera_for(&[before.mesh, after.mesh], options)?;
     Ok([draw(before, &camera, options, progress)?, draw(after, &camera, options, progress)?])
 }
 
@@ -147,7 +169,12 @@ fn camera_for(meshes: &[&TriMesh], options: &RenderOptions) -> Result<Camera, Re
     Camera::new(&options.view, meshes, [width, height]).ok_or(RenderError::Empty)
 }
 
-fn draw(mesh: &TriMesh, camera: &Camera, options: &RenderOptions, progress: &Progress) -> Result<Image, RenderError> {
+fn draw(
+    mesh: Painted<'_>,
+    camera: &Camera,
+    options: &RenderOptions,
+    progress: &Progress,
+) -> Result<Image, RenderError> {
     progress.check()?;
     let scene = Scene::new(mesh, camera, options, progress)?;
     let (width, height) = (options.width as usize, options.height as usize);

@@ -5,10 +5,11 @@ use rayon::prelude::*;
 
 use super::camera::Camera;
 use super::lines::{Line, Style};
-use super::{EdgeDrawing, RenderOptions};
+use super::{EdgeDrawing, Painted, RenderOptions};
+use crate::io::{Colours, Rgba, linear_from_srgb};
 use crate::mesh::edges::{Edge, Edges, copies};
+use crate::mesh::intersecting_triangles;
 use crate::mesh::weld::{has_repeated_index, welded_triangles};
-use crate::mesh::{TriMesh, intersecting_triangles};
 use crate::progress::{Progress, Stopped};
 
 /// Cosine of the angle from which on an edge is sharp and normals are not averaged over it: 30 degrees.
@@ -25,6 +26,8 @@ pub(super) struct Scene {
     pub(super) smooth: Vec<[Vec3; 3]>,
     /// Whether each triangle is marked as intersecting another.
     pub(super) marked: Vec<bool>,
+    /// The colours of the front side at the corners of each triangle, linear light; empty for grey.
+    pub(super) paint: Vec<[Vec3; 3]>,
     /// The triangles that can hide something: those with an area, each of several copies once.
     pub(super) obstacles: Vec<u32>,
     /// The lines to draw, in the order in which they cover each other.
@@ -33,7 +36,7 @@ pub(super) struct Scene {
 
 impl Scene {
     pub(super) fn new(
-        mesh: &TriMesh,
+        Painted { mesh, colours }: Painted<'_>,
         camera: &Camera,
         options: &RenderOptions,
         progress: &Progress,
@@ -52,7 +55,12 @@ impl Scene {
         let counts = |&t: &u32| flat[t as usize] != Vec3::ZERO && copies.binary_search(&t).is_err();
         let obstacles = (0..corners.len() as u32).filter(counts).collect();
         let lines = lines(&welded, &seen, &flat, options);
-        Ok(Self { corners, flat, smooth, marked, obstacles, lines })
+        let linear = |colour: Rgba| Vec3::from_array([0, 1, 2].map(|k| linear_from_srgb(colour[k]) as f32));
+        let paint = |colours: &Colours| {
+            (0..mesh.triangles.len()).into_par_iter().map(|t| colours.corners(mesh, t).map(linear)).collect()
+        };
+        let paint = colours.map_or_else(Vec::new, paint);
+        Ok(Self { corners, flat, smooth, marked, paint, obstacles, lines })
     }
 }
 

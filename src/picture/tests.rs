@@ -49,6 +49,25 @@ fn a_cube_from_the_front_covers_its_square() {
 }
 
 #[test]
+fn front_sides_have_their_colours_back_sides_do_not() {
+    let mesh = open_cube();
+    let blue = Colours::Faces(vec![[20, 40, 230, 255]; mesh.triangles.len()]);
+    let is_blue = |[r, g, b, a]: [u8; 4]| a > 0 && b / 2 > r && b / 2 > g;
+    let of = |colours: Option<&Colours>, view| {
+        count(&render(Painted { mesh: &mesh, colours }, &plain(view), &Progress::none()).unwrap(), is_blue)
+    };
+    assert!(of(Some(&blue), View::BACK) > 15_000 && of(None, View::BACK) == 0);
+    assert_eq!(of(Some(&blue), View::FRONT), 0, "only inner sides are seen");
+    // From blue to red across one side: both are there, and neither covers half.
+    let side = TriMesh { triangles: vec![[0, 1, 2]], positions: vec![DVec3::ZERO, DVec3::X, DVec3::Z] };
+    let corners = Colours::Corners(vec![[[0, 0, 255, 255], [255, 0, 0, 255], [255, 0, 0, 255]]]);
+    let seen =
+        render(Painted { mesh: &side, colours: Some(&corners) }, &plain(View::FRONT), &Progress::none()).unwrap();
+    let (blue, red) = (count(&seen, is_blue), count(&seen, is_rust));
+    assert!(blue > 100 && red > 1000, "{blue} blue, {red} red");
+}
+
+#[test]
 fn back_sides_show_through_a_missing_face() {
     let options = plain(View::FRONT);
     let seen = drawn(&open_cube(), &options);

@@ -20,7 +20,7 @@ pub use distance::{
     plan_distance,
 };
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
-pub use plan::plan;
+pub use plan::{plan, plan_canals, plan_morphology, plan_thicken};
 pub use report::{LdiReport, Report, StageTime, ThinReport};
 pub use thicken::{SheetSide, ThickenOptions, ThickenReport, thicken};
 pub use thickness::{LengthsReport, ThicknessReport, thickness};
@@ -217,7 +217,7 @@ pub fn boolean(
         return Err(Error::MissingOperand { operand: needed - 1, given: operands.len() });
     }
     let lattice = prepare::lattice(&prepare::bounds(operands)?, options.voxel)?;
-    plan::check_limits(operands, &lattice, options)?;
+    plan::check_limits(operands, &lattice, options, plan::Offsets::default())?;
     let mut stages = stages::Stages::new(progress);
 
     stages.begin("orient")?;

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::plan::{Offsets, check_offsets};
 use super::{Error, Options, Outcome, TriangleSource, boolean, refine, stages};
 use crate::fit::{Facets, FitOptions, FitReport, Surface, Wanted, fit};
 use crate::lattice::Lattice;
@@ -46,6 +47,7 @@ pub struct MorphologyReport {
 /// the lattice cannot hold.
 pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progress) -> Result<Outcome, Error> {
     let radius = usable(options.radius)?;
+    check_offsets(input, &options.solid, Offsets { count: options.operation.offsets(), radius })?;
     let outcome = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let mut stages = stages::Stages::new(progress);
     let run = Run { solid: &outcome.mesh, h: outcome.lattice.h, options, progress };

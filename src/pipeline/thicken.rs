@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::morphology::{Run, usable};
-use super::plan::area;
+use super::plan::{Offsets, area, check_offsets};
 use super::{Error, MorphologyOptions, Options, Outcome, TriangleSource, VoxelSize, boolean, prepare, stages};
 use crate::ldi::Expression;
 use crate::mesh::{Pseudonormals, TriMesh, ValidateOptions, validate};
@@ -73,6 +73,7 @@ pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -
         });
     }
     let fixed = Options { voxel: VoxelSize::Length(h), ..options.solid.clone() };
+    check_offsets(input, &fixed, Offsets { count: 1, radius: least / 2.0 })?;
     let solid = match boolean(std::slice::from_ref(input), &Expression::Operand(0), &fixed, progress) {
         Ok(outcome) => Some(outcome),
         Err(Error::NothingEnclosed { .. }) => None,

@@ -51,7 +51,7 @@ pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Res
     let operands = std::slice::from_ref(input);
     let bounds = prepare::bounds(operands)?;
     let lattice = prepare::lattice(&bounds, options.voxel)?;
-    plan::check_limits(operands, &lattice, options)?;
+    plan::check_limits(operands, &lattice, options, plan::Offsets::default())?;
     progress.stage("orient")?;
     let mut soup = prepare::prepare(operands, options.orient, progress)?;
     progress.stage("ldi")?;

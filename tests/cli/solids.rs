@@ -206,6 +206,63 @@ fn morphology_verbs_say_what_they_did_and_refuse_what_cannot_be() {
 }
 
 #[test]
+fn canals_are_listed_and_filled_by_number() {
+    let folder = folder();
+    let canals = |flags: &str| {
+        run_in(&folder, &format!("canals testdata/bored_block.off --resolution 128 --max-diameter 2 {flags}"))
+    };
+    let listed = canals("--map OUT/map.ply").exits(0);
+    let rows: Vec<Vec<String>> =
+        listed.text().lines().map(|line| line.split_whitespace().map(str::to_string).collect()).collect();
+    assert_eq!(rows.len(), 4, "{}", listed.text());
+    for (row, (number, diameter)) in rows[1..].iter().zip([(1, 1.6), (2, 1.0), (3, 0.6)]) {
+        assert_eq!((row[0].clone(), row[1].as_str()), (number.to_string(), "tunnel"));
+        assert!((row[2].parse::<f64>().expect("a diameter") - diameter).abs() < 0.05, "{row:?}");
+    }
+    assert_eq!(solid(&folder, "map.ply")["genus"], 5);
+    let report = canals("--remove 1,3 -o OUT/out.off --json").exits(0).json();
+    assert_eq!(report["pipeline"]["canals"]["removed"], serde_json::json!([1, 3]));
+    assert_eq!(report["output"]["validity"]["genus"], 3);
+    canals("--remove -o OUT/all.off").exits(0).says(&["3 of 3 canals filled"]);
+    assert_eq!(solid(&folder, "all.off")["genus"], 2);
+    let none = run_in(&folder, "canals testdata/open_cube.off --resolution 32 -d 1").exits(0);
+    assert!(none.text().starts_with("no canal"), "{}", none.text());
+    canals("--remove 4 -o OUT/none.off").exits(2).says(&["no canal 4: 3 were found"]);
+    canals("--remove 1").exits(2).says(&["where to write"]);
+    canals("-o OUT/none.off").exits(2).says(&["--remove"]);
+    canals("--remove 0 -o OUT/none.off").exits(2);
+    run_in(&folder, "canals testdata/bored_block.off").exits(2);
+    assert!(canals("--plan").exits(0).text().contains("memory"));
+}
+
+#[test]
+fn thin_parts_are_measured_and_thickened_and_sheets_become_plates() {
+    let folder = folder();
+    let thinnest = |file: &str| {
+        let report = run_in(&folder, &format!("inspect {file} --thickness --voxel 0.2 --json")).exits(0).json();
+        report["thickness"]["walls"]["percentiles"][1].as_f64().expect("a width")
+    };
+    assert!((thinnest("testdata/thin_parts.obj") - 0.3).abs() < 0.01);
+    let text = run_in(&folder, "inspect testdata/thin_parts.obj --thickness --voxel 0.2").exits(0).text();
+    assert!(text.contains("walls") && text.contains("--resolution"), "{text}");
+    let thicken = |file: &str, flags: &str| run_in(&folder, &format!("thicken testdata/{file} -o OUT/out.off {flags}"));
+    thicken("thin_parts.obj", "--min 1 --voxel 0.2").exits(0).says(&["walls grown to 1: volume +"]);
+    assert_eq!(solid(&folder, "out.off")["bodies"], 1);
+    let out = folder.path().join("out.off");
+    assert!(thinnest(out.to_str().expect("a plain name")) > 0.97);
+    for side in ["both", "front", "back"] {
+        thicken("open_sheet.obj", &format!("--min 1 --voxel 0.2 --side {side} --force"))
+            .exits(0)
+            .says(&["open sheets grown to 1"]);
+        assert_eq!(solid(&folder, "out.off")["bodies"], 1, "{side}");
+    }
+    thicken("open_cube.off", "--min 4h --resolution 32 --force").exits(0).says(&["nothing is thinner than"]);
+    thicken("thin_parts.obj", "--min 1h --force").exits(4).says(&["a voxel of at most"]);
+    thicken("thin_parts.obj", "").exits(2);
+    run_in(&folder, "inspect testdata/thin_parts.obj --voxel 0.2").exits(2);
+}
+
+#[test]
 fn the_map_shows_what_closes_holes_and_the_fit_has_switches() {
     let folder = folder();
     let repair = |flags: &str| {

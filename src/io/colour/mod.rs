@@ -9,7 +9,8 @@ use crate::mesh::TriMesh;
 
 pub(super) use gather::{Gathered, LEVELS_OF_WHITE, Levels};
 pub(super) use spread::{Tails, by_vertex, vertex_means};
-pub(super) use srgb::{linear_from_srgb, srgb_from_linear};
+pub(crate) use srgb::linear_from_srgb;
+pub(super) use srgb::srgb_from_linear;
 
 /// Red, green and blue as sRGB, 0 to 255, then alpha: 0 clear, 255 opaque.
 pub type Rgba = [u8; 4];

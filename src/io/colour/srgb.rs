@@ -1,7 +1,7 @@
 //! Between sRGB, which files of meshes hold, and linear light, which glTF holds.
 
 /// Linear light, 0 to 1, of an sRGB channel.
-pub(in crate::io) fn linear_from_srgb(level: u8) -> f64 {
+pub(crate) fn linear_from_srgb(level: u8) -> f64 {
     let s = f64::from(level) / 255.0;
     if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) }
 }
