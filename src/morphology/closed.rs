@@ -146,29 +146,9 @@ pub fn reached(
 }
 
 /// Points of a triangle about `spacing` apart, its corners among them.
-pub(super) fn samples(corners: [DVec3; 3], spacing: f64) -> Vec<DVec3> {
-    grid(corners, steps(corners, spacing).min(MOST_SAMPLES))
-}
-
-/// The same, however many there are, and the triangles between them, which are not larger than `spacing`.
-pub(super) fn samples_of(corners: [DVec3; 3], spacing: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
-    let steps = steps(corners, spacing) as u32;
-    // Row `i` begins after the rows before it, each shorter by one.
-    let number = |i: u32, j: u32| i * (steps + 1) - i * i.saturating_sub(1) / 2 + j;
-    let pieces = (0..steps).flat_map(|i| (0..steps - i).map(move |j| (i, j))).flat_map(|(i, j)| {
-        let up = [number(i, j), number(i + 1, j), number(i, j + 1)];
-        let down = (i + j + 2 <= steps).then(|| [number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)]);
-        std::iter::once(up).chain(down)
-    });
-    (grid(corners, steps as usize), pieces.collect())
-}
-
-fn steps([a, b, c]: [DVec3; 3], spacing: f64) -> usize {
+pub(super) fn samples([a, b, c]: [DVec3; 3], spacing: f64) -> Vec<DVec3> {
     let longest = (b - a).length().max((c - b).length()).max((a - c).length());
-    ((longest / spacing).ceil() as usize).max(1)
-}
-
-fn grid([a, b, c]: [DVec3; 3], steps: usize) -> Vec<DVec3> {
+    let steps = ((longest / spacing).ceil() as usize).clamp(1, MOST_SAMPLES);
     let share = |k: usize| k as f64 / steps as f64;
     (0..=steps)
         .flat_map(|i| (0..=steps - i).map(move |j| (i, j)))

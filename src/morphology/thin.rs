@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use super::Body;
-use super::closed::samples_of;
+use crate::mesh::edges::Union;
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::{Progress, Stopped};
 
@@ -22,14 +23,18 @@ const WITHIN: f64 = 0.1;
 /// A ball smaller than this, h, is no wall but an edge of the surface.
 const SMALLEST: f64 = 1e-3;
 
+/// Connected pieces of surface with less area than this, h², have no walls behind them, but what a fit leaves of places that
+/// it had to give up.
+const LEAST_AREA: f64 = 2.0;
+
 /// Triangles of the middle are not longer than this many times the pieces of surface that they belong to, and one voxel.
 const TORN: f64 = 2.0;
 
 /// The middles of the walls of `body` that are thinner than `least`, as triangles that bound nothing: for each piece of the
 /// surface, no larger than `h`, the centres of the largest balls that touch its corners from inside, where they touch the
 /// surface on the other side, too; where only one that touches its centre does, a very small triangle there. All in model
-/// units; empty where no wall is as thin.
-pub fn middles(body: &Body<'_>, least: f64, h: f64, progress: &Progress) -> Result<TriMesh, Stopped> {
+/// units; empty where no wall is as thin. The second number is the area of the surface with these behind it.
+pub fn middles(body: &Body<'_>, least: f64, h: f64, progress: &Progress) -> Result<(TriMesh, f64), Stopped> {
     let walls = Walls { body, radius: least / 2.0, h };
     let of = |t: usize| {
         if t.is_multiple_of(1024) {
@@ -37,11 +42,31 @@ pub fn middles(body: &Body<'_>, least: f64, h: f64, progress: &Progress) -> Resu
         }
         Ok(walls.behind(t))
     };
-    let found: Vec<Vec<[DVec3; 3]>> =
-        (0..body.mesh.triangles.len()).into_par_iter().map(of).collect::<Result<_, Stopped>>()?;
-    let positions: Vec<DVec3> = found.into_iter().flatten().flatten().collect();
+    let found: Vec<Behinds> = (0..body.mesh.triangles.len()).into_par_iter().map(of).collect::<Result<_, Stopped>>()?;
+    let mut whole = Union::new(body.mesh.positions.len());
+    let thin = || found.iter().zip(&body.mesh.triangles).filter(|(behind, _)| behind.area > 0.0);
+    for (_, &[a, b, c]) in thin() {
+        whole.join(a, b);
+        whole.join(b, c);
+    }
+    let mut areas = vec![0.0; body.mesh.positions.len()];
+    thin().for_each(|(behind, &[a, ..])| areas[whole.root(a) as usize] += behind.area);
+    let (mut positions, mut area) = (Vec::new(), 0.0);
+    for (behind, &[a, ..]) in thin() {
+        if areas[whole.root(a) as usize] > LEAST_AREA * h * h {
+            area += behind.area;
+            positions.extend(behind.middles.iter().flatten());
+        }
+    }
     let triangles = (0..positions.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    Ok(TriMesh { positions, triangles })
+    Ok((TriMesh { positions, triangles }, area))
+}
+
+/// What is behind one triangle.
+#[derive(Default)]
+struct Behinds {
+    middles: Vec<[DVec3; 3]>,
+    area: f64,
 }
 
 /// What is behind a point of the surface.
@@ -63,27 +88,35 @@ struct Walls<'a> {
 
 impl Walls<'_> {
     /// The middles behind one triangle.
-    fn behind(&self, t: usize) -> Vec<[DVec3; 3]> {
+    fn behind(&self, t: usize) -> Behinds {
         let corners = self.body.mesh.corners(t);
         let normal = Plane::through(corners).normal;
-        let (points, pieces) = samples_of(corners, self.h);
-        let behind: Vec<Behind> = points.iter().map(|&p| self.at(p, normal)).collect();
-        let middle = |piece: &[u32; 3]| {
-            let ends = piece.map(|n| behind[n as usize]);
-            if ends == [Behind::Thick; 3] {
-                return None;
-            }
+        let (points, pieces) = pieces(corners, self.h);
+        let ends: Vec<Behind> = points.iter().map(|&p| self.at(p, normal)).collect();
+        let mut behind = Behinds::default();
+        for piece in pieces {
             let [p, q, r] = piece.map(|n| points[n as usize]);
-            if let [Behind::Wall(a), Behind::Wall(b), Behind::Wall(c)] = ends
-                && longest([a, b, c]) <= TORN * (longest([p, q, r]) + self.h)
-            {
-                return Some([a, b, c]);
+            if let Some(middle) = self.middle([p, q, r], piece.map(|n| ends[n as usize]), normal) {
+                behind.middles.push(middle);
+                behind.area += (q - p).cross(r - p).length() / 2.0;
             }
-            let Behind::Wall(centre) = self.at((p + q + r) / 3.0, normal) else { return None };
-            let (u, v) = normal.any_orthonormal_pair();
-            Some([centre, centre + u * SMALLEST * self.h, centre + v * SMALLEST * self.h])
-        };
-        pieces.iter().filter_map(middle).collect()
+        }
+        behind
+    }
+
+    /// The middle behind one piece, with what is behind its corners.
+    fn middle(&self, piece: [DVec3; 3], ends: [Behind; 3], normal: DVec3) -> Option<[DVec3; 3]> {
+        if ends == [Behind::Thick; 3] {
+            return None;
+        }
+        if let [Behind::Wall(a), Behind::Wall(b), Behind::Wall(c)] = ends
+            && longest([a, b, c]) <= TORN * (longest(piece) + self.h)
+        {
+            return Some([a, b, c]);
+        }
+        let Behind::Wall(centre) = self.at(piece.iter().sum::<DVec3>() / 3.0, normal) else { return None };
+        let (u, v) = normal.any_orthonormal_pair();
+        Some([centre, centre + u * SMALLEST * self.h, centre + v * SMALLEST * self.h])
     }
 
     /// The largest ball, up to the radius, that touches the surface at `p` from inside.
@@ -111,4 +144,50 @@ impl Walls<'_> {
 
 fn longest([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).length().max((c - b).length()).max((a - c).length())
+}
+
+/// A triangle cut at the middles of its longest edges until none is longer than `most`: points, and the pieces between them.
+fn pieces(corners: [DVec3; 3], most: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let mut points = corners.to_vec();
+    let mut middles: FxHashMap<[u32; 2], u32> = FxHashMap::default();
+    let (mut rest, mut done) = (vec![[0, 1, 2]], Vec::new());
+    while let Some(piece) = rest.pop() {
+        let length = |k: usize| points[piece[k] as usize].distance(points[piece[(k + 1) % 3] as usize]);
+        // Of two as long the one between the smaller numbers, so that the pieces on its sides cut the same one.
+        let ends = |k: usize| [piece[k].min(piece[(k + 1) % 3]), piece[k].max(piece[(k + 1) % 3])];
+        let longest = (0..3).max_by(|&a, &b| length(a).total_cmp(&length(b)).then(ends(b).cmp(&ends(a)))).unwrap_or(0);
+        if length(longest) <= most {
+            done.push(piece);
+            continue;
+        }
+        let [a, b, c] = [0, 1, 2].map(|k| piece[(longest + k) % 3]);
+        let middle = *middles.entry(ends(longest)).or_insert_with(|| {
+            points.push((points[a as usize] + points[b as usize]) / 2.0);
+            points.len() as u32 - 1
+        });
+        rest.extend([[a, middle, c], [middle, b, c]]);
+    }
+    (points, done)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_cover_a_triangle_once_and_slivers_make_few() {
+        let area = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).length() / 2.0;
+        for (corners, most) in [
+            ([DVec3::ZERO, DVec3::X, DVec3::Y], 0.1),
+            ([DVec3::ZERO, DVec3::new(100.0, 0.0, 1.0), DVec3::new(50.0, 0.02, 0.0)], 1.0),
+            ([DVec3::ZERO, DVec3::X, DVec3::Y], 9.0),
+        ] {
+            let (points, pieces) = pieces(corners, most);
+            let of = |piece: [u32; 3]| piece.map(|n| points[n as usize]);
+            assert!(pieces.iter().all(|&piece| longest(of(piece)) <= most));
+            let total: f64 = pieces.iter().map(|&piece| area(of(piece))).sum();
+            assert!((total / area(corners) - 1.0).abs() < 1e-9);
+            assert!(pieces.len() < 1500, "{}", pieces.len());
+        }
+    }
 }

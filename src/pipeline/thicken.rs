@@ -82,12 +82,12 @@ pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -
     let mut stages = stages::Stages::new(progress);
     stages.begin("thin walls")?;
     let body = solid.as_ref().map(|solid| Body::new(&solid.mesh, None));
-    let mut thin = match &body {
+    let (mut thin, thin_area) = match &body {
         Some(body) => middles(body, least, h, progress)?,
-        None => TriMesh::default(),
+        None => (TriMesh::default(), 0.0),
     };
     let sheets = sheets(input, body.as_ref(), h, progress)?;
-    let (thin_area, sheet_area) = (area(&thin), area(&sheets));
+    let sheet_area = area(&sheets);
     thin.append(&moved(sheets, options.side, least / 2.0));
     let before = solid.as_ref().map_or(0.0, |solid| volume(&solid.mesh));
     let mut outcome = match solid {

@@ -83,13 +83,16 @@ impl Canals {
         Region { of: &self.of, chosen }
     }
 
-    /// For each triangle of the solid the number of the canal that it is a wall of; 0: none.
+    /// For each triangle of the solid the number of the canal that most of it is a wall of; 0: none.
     pub fn walls(&self, solid: &TriMesh, lattice: &Lattice) -> Vec<u32> {
         let over = |t: usize| {
             let corners = solid.corners(t);
             let up = Plane::through(corners).normal * BESIDE;
             let number = |p: DVec3| self.of.get((lattice.to_lattice(p) + up).round().as_ivec3());
-            samples(corners, lattice.h).into_iter().map(number).find(|&number| number > 0).unwrap_or(0)
+            // Triangles around a mouth have some points beside it.
+            let mut numbers: Vec<u32> = samples(corners, lattice.h).into_iter().map(number).collect();
+            let middle = numbers.len() / 2;
+            *numbers.select_nth_unstable(middle).1
         };
         (0..solid.triangles.len()).into_par_iter().map(over).collect()
     }
