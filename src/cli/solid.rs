@@ -39,7 +39,8 @@ pub struct Job<'a> {
 pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let args = job.args;
     if args.output.is_none() && !args.plan && job.change.is_none_or(Change::makes_a_mesh) {
-        return Err(Failure::usage("where to write the result is not said").hint("-o OUT, or --plan"));
+        return Err(Failure::usage("where to write the result is not said: --output OUT")
+            .hint("--plan says what it would cost, without an output"));
     }
     let mut target = args.output.as_deref().map(|path| Target::new(path, &args.writing, &job.paths)).transpose()?;
     if let Some(map) = &args.map {
