@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::backend::BackendChoice;
+use super::devices::DevicesArgs;
 use super::length::{BandChoice, Length, Simplify, parse_duration, parse_size};
 use super::render::{ViewChoice, parse_view};
 use crate::io::{Format, GridFormat, Unit};
@@ -80,6 +82,9 @@ pub enum Verb {
     /// Draw a mesh, or two for comparison, as a PNG picture
     #[command(after_help = EXIT_CODES)]
     Render(RenderArgs),
+    /// List the graphics adapters, and what --backend would take
+    #[command(after_help = EXIT_CODES)]
+    Devices(DevicesArgs),
 }
 
 const CSG_HELP: &str = "\
@@ -334,6 +339,9 @@ pub struct SolidArgs {
     /// How rays that disagree are settled
     #[arg(long, value_enum, default_value_t = VoteChoice::Winding)]
     pub vote: VoteChoice,
+    /// Which processor finds the rays' crossings; the result is the same
+    #[arg(long, value_enum, default_value_t = BackendChoice::Auto)]
+    pub backend: BackendChoice,
     /// Keep the vertices of every voxel apart: more triangles
     #[arg(long)]
     pub no_collapse: bool,

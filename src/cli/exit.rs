@@ -126,6 +126,7 @@ impl Failure {
                     None => failure.hint("the inputs alone need that much: a larger --max-memory"),
                 }
             }
+            Error::Gpu { reason, hint } => Self::new(Exit::Internal, reason.clone()).hint(hint.clone()),
             Error::MissingOperand { .. } => Self::internal(error.to_string()),
         }
     }

@@ -45,6 +45,9 @@ pub struct RunReport {
     /// What `sdf` found and did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance: Option<DistanceReport>,
+    /// The graphics adapters, for `devices`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub devices: Option<super::devices::DeviceReport>,
     /// What `compare` measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
@@ -138,6 +141,7 @@ impl RunReport {
             plan: None,
             pipeline: None,
             distance: None,
+            devices: None,
             comparison: None,
             output: None,
             warnings: Vec::new(),

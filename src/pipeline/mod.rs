@@ -1,5 +1,6 @@
 //! The pipelines: short functions that read like the drawing in the crate's documentation.
 
+mod backend;
 mod colours;
 mod distance;
 mod morphology;
@@ -10,6 +11,7 @@ mod report;
 mod solid;
 mod stages;
 
+pub use backend::{Backend, BackendReport};
 pub use colours::{carry_colours, classes};
 pub use distance::{
     DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, distance,
@@ -24,7 +26,7 @@ use rayon::prelude::*;
 use crate::contour::{ContourOptions, contour};
 use crate::fit::{Facets, FitOptions, fit};
 use crate::lattice::Lattice;
-use crate::ldi::{Evidence, Expression, Spans, ldis, spans};
+use crate::ldi::{Evidence, Expression, Spans, spans};
 use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
 use crate::progress::{Progress, Stopped};
@@ -70,6 +72,8 @@ pub struct Options {
     pub classes: Vec<Vec<u32>>,
     /// Upper bound for the working memory, bytes; `None`: no bound.
     pub max_memory: Option<u64>,
+    /// Which processor makes the layered depth images.
+    pub backend: Backend,
 }
 
 impl Options {
@@ -84,6 +88,7 @@ impl Options {
             fit: Some(FitOptions::default()),
             classes: Vec::new(),
             max_memory: None,
+            backend: Backend::default(),
         }
     }
 }
@@ -172,6 +177,14 @@ pub enum Error {
         /// A voxel size that fits, model units; `None` when no size does.
         voxel_that_fits: Option<f64>,
     },
+    /// [`Backend::Gpu`] was asked for and cannot do it.
+    #[error("{reason}")]
+    Gpu {
+        /// One sentence: why.
+        reason: String,
+        /// What to try.
+        hint: String,
+    },
     /// The expression names an operand that was not given.
     #[error("the expression names operand {operand}, but only {given} were given")]
     MissingOperand {
@@ -209,7 +222,8 @@ pub fn boolean(
     stages.begin("orient")?;
     let mut soup = prepare::prepare(operands, options.orient, progress)?;
     stages.begin("ldi")?;
-    let mut layers = ldis(&soup.mesh, &lattice, 1, progress)?;
+    let crossings = plan::crossings(operands, &lattice);
+    let (mut layers, made_by) = backend::layers(&soup.mesh, &lattice, options.backend, crossings, progress)?;
     soup.turn_patches(&mut layers, options.orient, progress)?;
     let hits = solid::count(&layers);
     stages.begin("spans")?;
@@ -248,6 +262,7 @@ pub fn boolean(
     report.orient = soup.reports;
     report.fit = fitted;
     report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
+    report.ldi.made_by = made_by;
     report.warnings = solid::warnings(&report);
     report.stages = stages.finish();
     Ok(Outcome { mesh: surface.mesh, sources, lattice, report })

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::MorphologyReport;
+use super::{BackendReport, MorphologyReport};
 
 use crate::fit::FitReport;
 use crate::orient::OrientReport;
@@ -53,6 +53,8 @@ pub struct LdiReport {
     pub hits: usize,
     /// The most crossings on one ray.
     pub layers: usize,
+    /// The processor that found them.
+    pub made_by: BackendReport,
 }
 
 /// Evidence of walls and gaps that the voxel size may not hold.
