@@ -28,7 +28,7 @@ Exit status:
 IN and OUT may be `-` for standard input and output.
 LEN is 0.4mm, 1in, 1% (of the bounding box diagonal), 2h (voxels) or a plain number in the file's units.";
 
-/// Repairs triangle meshes and does booleans on broken ones. Offline, on the CPU.
+/// Repairs triangle meshes and does booleans on broken ones. Offline.
 #[derive(Debug, Parser)]
 #[command(name = "meshwright", version, after_help = EXIT_CODES, propagate_version = true)]
 pub struct Cli {
