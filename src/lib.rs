@@ -20,6 +20,8 @@ pub mod cli;
 pub mod compare;
 pub mod contour;
 pub mod fit;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod io;
 pub mod lattice;
 pub mod ldi;

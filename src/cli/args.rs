@@ -5,8 +5,10 @@ use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 
+use super::backend::BackendChoice;
 use super::change::RemoveChoice;
 use super::choices::{Defect, EdgeChoice, MethodChoice, OrientChoice, SideChoice, SignChoice, VoteChoice};
+use super::devices::DevicesArgs;
 use super::length::{BandChoice, Length, Simplify, parse_duration, parse_size};
 use super::render::{ViewChoice, parse_view};
 use crate::io::{Format, GridFormat, Unit};
@@ -25,7 +27,7 @@ Exit status:
 IN and OUT may be `-` for standard input and output.
 LEN is 0.4mm, 1in, 1% (of the bounding box diagonal), 2h (voxels) or a plain number in the file's units.";
 
-/// Repairs triangle meshes and does booleans on broken ones. Offline, on the CPU.
+/// Repairs triangle meshes and does booleans on broken ones. Offline.
 #[derive(Debug, Parser)]
 #[command(name = "meshwright", version, after_help = EXIT_CODES, propagate_version = true)]
 pub struct Cli {
@@ -85,6 +87,9 @@ pub enum Verb {
     /// Draw a mesh, or two for comparison, as a PNG picture
     #[command(after_help = EXIT_CODES)]
     Render(RenderArgs),
+    /// List the graphics adapters, and what --backend would take
+    #[command(after_help = EXIT_CODES)]
+    Devices(DevicesArgs),
 }
 
 const CSG_HELP: &str = "\
@@ -382,6 +387,9 @@ pub struct SolidArgs {
     /// How rays that disagree are settled
     #[arg(long, value_enum, default_value_t = VoteChoice::Winding)]
     pub vote: VoteChoice,
+    /// Which processor finds the rays' crossings; the result is the same
+    #[arg(long, value_enum, default_value_t = BackendChoice::Auto)]
+    pub backend: BackendChoice,
     /// Keep the vertices of every voxel apart: more triangles
     #[arg(long)]
     pub no_collapse: bool,

@@ -1,6 +1,7 @@
 //! The command line: one file a verb. Only this folder prints and knows exit codes.
 
 mod args;
+mod backend;
 mod boolean;
 mod change;
 mod choices;
@@ -8,6 +9,7 @@ mod compare;
 mod convert;
 mod csg;
 mod csg_parser;
+mod devices;
 mod exit;
 mod input;
 mod inspect;
@@ -49,6 +51,9 @@ pub fn main() -> ExitCode {
         }
     };
     std::panic::set_hook(Box::new(|panic| {
+        if backend::expects_panic() {
+            return;
+        }
         let place = panic.location().map_or(String::new(), |place| format!(" ({}:{})", place.file(), place.line()));
         let failure = Failure::internal(format!("the program has a bug{place}"))
             .hint("please report it with the command and the file");
@@ -93,6 +98,7 @@ fn dispatch(verb: &Verb) -> Exit {
         Verb::Convert(args) => run("convert", &args.common, &[&args.input], Some(&args.output), |session, report| {
             convert::run(args, session, report)
         }),
+        Verb::Devices(args) => run("devices", &args.common, &[], None, |_, report| devices::run(args, report)),
         Verb::Render(args) => {
             let inputs: Vec<&Path> = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
             run("render", &args.common, &inputs, Some(&args.output), |session, report| {

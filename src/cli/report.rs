@@ -48,6 +48,9 @@ pub struct RunReport {
     /// What `inspect --thickness` measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<ThicknessReport>,
+    /// The graphics adapters, for `devices`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub devices: Option<super::devices::DeviceReport>,
     /// What `compare` measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
@@ -142,6 +145,7 @@ impl RunReport {
             pipeline: None,
             distance: None,
             thickness: None,
+            devices: None,
             comparison: None,
             output: None,
             warnings: Vec::new(),

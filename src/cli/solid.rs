@@ -12,7 +12,7 @@ use super::length::{Scale, Simplify};
 use super::output::{Target, write_verified};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
-use super::{limits, summary};
+use super::{backend, limits, summary};
 use crate::fit::FitOptions;
 use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
 use crate::ldi::Expression;
@@ -55,6 +55,7 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
     }
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     let (options, scale) = options(args, unit, &inputs)?;
+    backend::check_built(args.backend)?;
     report.options = resolved(args, unit, &options);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     if args.plan {
@@ -81,6 +82,7 @@ fn options(args: &SolidArgs, unit: Option<Unit>, inputs: &[Input]) -> Result<(Op
         robust: RobustOptions { trust: trust(args.vote.into()), ..RobustOptions::default() },
         collapse: !args.no_collapse,
         max_memory: args.max_memory,
+        backend: args.backend.into(),
         ..Options::new(voxel)
     };
     Ok((options, scale))
@@ -119,6 +121,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
         "vote": options.rule,
+        "backend": options.backend,
         "collapse": options.collapse,
         "fit": options.fit.is_some(),
         "simplify_voxels": options.fit.map(|fit| fit.tolerance),

@@ -78,11 +78,16 @@ pub struct Layers {
 impl Layers {
     /// The rays of one direction; their crossings, offsets too, are still missing.
     pub(super) fn empty(direction: Direction, dims: IVec3, factor: u32) -> Self {
+        let (low, size) = Self::window(direction, dims, factor);
+        Self { direction, factor, low, size, offsets: Vec::new(), hits: Vec::new() }
+    }
+
+    /// What [`Self::low`] and [`Self::size`] are for a lattice of `dims` voxels.
+    pub fn window(direction: Direction, dims: IVec3, factor: u32) -> ([i32; 2], [i32; 2]) {
         let (low, size) = direction.ray_window(dims);
         let f = factor as i32;
         // The rays between the voxels' own stop at the last voxel's.
-        let (low, size) = (low.map(|k| k * f), size.map(|n| (n - 1) * f + 1));
-        Self { direction, factor, low, size, offsets: Vec::new(), hits: Vec::new() }
+        (low.map(|k| k * f), size.map(|n| (n - 1) * f + 1))
     }
 
     /// Number of rays.
@@ -146,22 +151,28 @@ impl Layers {
         self.sort();
     }
 
-    fn sort(&mut self) {
-        let rows = self.offsets.chunks(self.size[0] as usize);
+    /// For each row of rays where its rays begin, and its crossings.
+    pub(super) fn rows(&mut self) -> Vec<(&[u32], &mut [Hit])> {
+        let width = self.size[0] as usize;
         let mut rest = self.hits.as_mut_slice();
-        let mut tasks = Vec::new();
         let mut done = 0;
-        for row in rows.take(self.size[1] as usize) {
-            let end = self.offsets[(tasks.len() + 1) * self.size[0] as usize];
+        let mut rows = Vec::with_capacity(self.size[1] as usize);
+        for starts in self.offsets.chunks(width).take(self.size[1] as usize) {
+            let end = self.offsets[(rows.len() + 1) * width];
             let (mine, others) = rest.split_at_mut((end - done) as usize);
-            tasks.push((row, done, mine));
+            rows.push((starts, mine));
             rest = others;
             done = end;
         }
-        tasks.into_par_iter().with_min_len(32).for_each(|(row, base, hits)| {
+        rows
+    }
+
+    pub(super) fn sort(&mut self) {
+        self.rows().into_par_iter().with_min_len(32).for_each(|(starts, hits)| {
             let len = hits.len() as u32;
-            for (k, &start) in row.iter().enumerate() {
-                let end = row.get(k + 1).map_or(len, |&e| e - base);
+            let base = starts[0];
+            for (k, &start) in starts.iter().enumerate() {
+                let end = starts.get(k + 1).map_or(len, |&e| e - base);
                 let ray = &mut hits[(start - base) as usize..end as usize];
                 if ray.len() > 1 {
                     ray.sort_unstable_by(|a, b| a.depth.total_cmp(&b.depth).then(a.tagged.cmp(&b.tagged)));

@@ -1,6 +1,7 @@
 //! Layered depth images: every crossing of the lattice's own rays with the soup, in 13 directions
 //! (Bærentzen §3), and the spans of the result along them (§3.1, §5.1).
 
+mod assemble;
 mod crossings;
 mod evidence;
 mod expression;
@@ -9,6 +10,7 @@ mod raster;
 mod spans;
 mod thin;
 
+pub use assemble::{Crossed, assemble};
 pub use crossings::edge_crossing;
 pub use evidence::Evidence;
 pub use expression::Expression;

@@ -45,7 +45,7 @@ pub fn rasterise(
     progress: &Progress,
 ) -> Result<Layers, Stopped> {
     let mut layers = Layers::empty(direction, dims, factor);
-    let window = Window { low: layers.low, size: layers.size, step: UNIT / factor as i32 };
+    let window = Window { low: layers.low, size: layers.size, step: ray_step(factor) };
     let chunks = triangles.par_chunks(CHUNK).enumerate();
     let found: Vec<Vec<(u32, Hit)>> = chunks
         .map(|(n, chunk)| {
@@ -98,20 +98,23 @@ impl EdgeFunction {
     }
 }
 
-impl Window {
-    /// Calls `hit(ray, depth in voxels, entering)` for each ray that the triangle covers.
+/// A triangle as the rays of one direction see it.
+pub(super) struct Facet {
+    /// Opposite to corner 0, 1 and 2.
+    edges: [EdgeFunction; 3],
+    per_area: f64,
+    rise: [f64; 2],
+    base: f64,
+    entering: bool,
+}
+
+impl Facet {
+    /// The triangle with these corners, sheared and snapped; `None` when the rays see it from the side.
     #[inline]
-    fn cover(&self, mut p: [IVec3; 3], mut hit: impl FnMut(u32, f64, bool)) {
-        let low = p[0].min(p[1]).min(p[2]);
-        let high = p[0].max(p[1]).max(p[2]);
-        let (u0, u1) = self.range(low.x, high.x, 0);
-        let (v0, v1) = self.range(low.y, high.y, 1);
-        if u0 > u1 || v0 > v1 {
-            return;
-        }
+    pub(super) fn new(mut p: [IVec3; 3]) -> Option<Self> {
         let mut area = cross(p[0], p[1], p[2]);
         if area == 0 {
-            return;
+            return None;
         }
         let entering = area < 0;
         if entering {
@@ -119,18 +122,56 @@ impl Window {
             area = -area;
         }
         let edges = [EdgeFunction::new(p[1], p[2]), EdgeFunction::new(p[2], p[0]), EdgeFunction::new(p[0], p[1])];
-        let (per_area, step) = (1.0 / area as f64, self.step as i64);
         let rise = [(p[1].z - p[0].z) as f64, (p[2].z - p[0].z) as f64];
-        let base = p[0].z as f64;
+        Some(Self { edges, per_area: 1.0 / area as f64, rise, base: p[0].z as f64, entering })
+    }
+
+    /// Whether a ray enters here, against the triangle's normal.
+    #[inline]
+    pub(super) fn entering(&self) -> bool {
+        self.entering
+    }
+
+    /// Depth, voxels, of the triangle's plane on the ray (u, v), snapped units.
+    #[inline]
+    fn depth(&self, u: i64, v: i64) -> f64 {
+        let (w1, w2) = (self.edges[1].at(u, v) as f64, self.edges[2].at(u, v) as f64);
+        let depth = self.base + (w1 * self.rise[0] + w2 * self.rise[1]) * self.per_area;
+        depth * (1.0 / UNIT as f64)
+    }
+
+    /// Depth, voxels, where the ray (u, v), snapped units, crosses the triangle; `None` when it passes beside it.
+    #[inline]
+    pub(super) fn crossing(&self, u: i64, v: i64) -> Option<f64> {
+        self.edges.iter().all(|edge| edge.at(u, v) >= edge.bias).then(|| self.depth(u, v))
+    }
+}
+
+/// Distance of the rays, snapped units, with `factor` rays a voxel.
+pub(super) fn ray_step(factor: u32) -> i32 {
+    UNIT / factor as i32
+}
+
+impl Window {
+    /// Calls `hit(ray, depth in voxels, entering)` for each ray that the triangle covers.
+    #[inline]
+    fn cover(&self, p: [IVec3; 3], mut hit: impl FnMut(u32, f64, bool)) {
+        let low = p[0].min(p[1]).min(p[2]);
+        let high = p[0].max(p[1]).max(p[2]);
+        let (u0, u1) = self.range(low.x, high.x, 0);
+        let (v0, v1) = self.range(low.y, high.y, 1);
+        if u0 > u1 || v0 > v1 {
+            return;
+        }
+        let Some(facet) = Facet::new(p) else { return };
+        let step = self.step as i64;
         for j in v0..=v1 {
             let v = j as i64 * step;
-            let (first, last) = row(&edges, v, u0, u1, step);
+            let (first, last) = row(&facet.edges, v, u0, u1, step);
             let start = (j - self.low[1]) as u32 * self.size[0] as u32;
             for i in first..=last {
                 let u = i as i64 * step;
-                let (w1, w2) = (edges[1].at(u, v) as f64, edges[2].at(u, v) as f64);
-                let depth = base + (w1 * rise[0] + w2 * rise[1]) * per_area;
-                hit(start + (i - self.low[0]) as u32, depth * (1.0 / UNIT as f64), entering);
+                hit(start + (i - self.low[0]) as u32, facet.depth(u, v), facet.entering);
             }
         }
     }

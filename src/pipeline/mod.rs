@@ -1,5 +1,6 @@
 //! The pipelines: short functions that read like the drawing in the crate's documentation.
 
+mod backend;
 mod canals;
 mod colours;
 mod distance;
@@ -13,6 +14,7 @@ mod stages;
 mod thicken;
 mod thickness;
 
+pub use backend::{Backend, BackendReport};
 pub use canals::{CanalOptions, CanalOutcome, CanalReport, Remove, canals};
 pub use colours::{carry_colours, classes};
 pub use distance::{
@@ -30,7 +32,7 @@ use rayon::prelude::*;
 use crate::contour::{ContourOptions, contour};
 use crate::fit::{Facets, FitOptions, fit};
 use crate::lattice::Lattice;
-use crate::ldi::{Evidence, Expression, Spans, ldis, spans};
+use crate::ldi::{Evidence, Expression, Spans, spans};
 use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
 use crate::progress::{Progress, Stopped};
@@ -76,6 +78,8 @@ pub struct Options {
     pub classes: Vec<Vec<u32>>,
     /// Upper bound for the working memory, bytes; `None`: no bound.
     pub max_memory: Option<u64>,
+    /// Which processor makes the layered depth images.
+    pub backend: Backend,
 }
 
 impl Options {
@@ -90,6 +94,7 @@ impl Options {
             fit: Some(FitOptions::default()),
             classes: Vec::new(),
             max_memory: None,
+            backend: Backend::default(),
         }
     }
 }
@@ -186,6 +191,14 @@ pub enum Error {
         /// Canals found.
         count: u32,
     },
+    /// [`Backend::Gpu`] was asked for and cannot do it.
+    #[error("{reason}")]
+    Gpu {
+        /// One sentence: why.
+        reason: String,
+        /// What to try.
+        hint: String,
+    },
     /// The expression names an operand that was not given.
     #[error("the expression names operand {operand}, but only {given} were given")]
     MissingOperand {
@@ -223,7 +236,8 @@ pub fn boolean(
     stages.begin("orient")?;
     let mut soup = prepare::prepare(operands, options.orient, progress)?;
     stages.begin("ldi")?;
-    let mut layers = ldis(&soup.mesh, &lattice, 1, progress)?;
+    let crossings = plan::crossings(operands, &lattice);
+    let (mut layers, made_by) = backend::layers(&soup.mesh, &lattice, options.backend, crossings, progress)?;
     soup.turn_patches(&mut layers, options.orient, progress)?;
     let hits = solid::count(&layers);
     stages.begin("spans")?;
@@ -262,6 +276,7 @@ pub fn boolean(
     report.orient = soup.reports;
     report.fit = fitted;
     report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
+    report.ldi.made_by = made_by;
     report.warnings = solid::warnings(&report);
     report.stages = stages.finish();
     Ok(Outcome { mesh: surface.mesh, sources, lattice, report })

@@ -104,6 +104,11 @@ pub(super) fn check_offsets(input: &TriMesh, options: &Options, offsets: Offsets
     check_limits(operands, &lattice, options, offsets)
 }
 
+/// How often the rays of all directions cross the operands, about.
+pub(super) fn crossings(operands: &[TriMesh], lattice: &Lattice) -> f64 {
+    Input::of(operands).crossings(lattice)
+}
+
 /// What the cost depends on, apart from the lattice.
 pub(super) struct Input {
     triangles: usize,
@@ -126,6 +131,10 @@ impl Input {
         self.area / (lattice.h * lattice.h)
     }
 
+    fn crossings(&self, lattice: &Lattice) -> f64 {
+        CROSSINGS_PER_CELL * self.surface(lattice)
+    }
+
     fn check_numbers(&self, lattice: &Lattice) -> Result<(), Error> {
         if self.triangles > MAX_TRIANGLES || self.vertices > u32::MAX as usize {
             let reason = format!(
@@ -136,7 +145,7 @@ impl Input {
             return Err(Error::TooLarge { reason });
         }
         // Half of what can be numbered: the estimate leaves out what lies along the triangles' sides.
-        let crossings = CROSSINGS_PER_CELL * self.surface(lattice);
+        let crossings = self.crossings(lattice);
         if crossings > MAX_CROSSINGS as f64 / 2.0 {
             let reason = format!(
                 "the surface would be crossed {crossings:.1e} times, more than can be numbered: \

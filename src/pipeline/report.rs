@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{CanalReport, MorphologyReport, ThickenReport};
+use super::{BackendReport, CanalReport, MorphologyReport, ThickenReport};
 
 use crate::fit::FitReport;
 use crate::orient::OrientReport;
@@ -57,6 +57,8 @@ pub struct LdiReport {
     pub hits: usize,
     /// The most crossings on one ray.
     pub layers: usize,
+    /// The processor that found them.
+    pub made_by: BackendReport,
 }
 
 /// Evidence of walls and gaps that the voxel size may not hold.

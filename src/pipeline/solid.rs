@@ -53,6 +53,7 @@ pub(super) fn report(lattice: &Lattice, spans: &[Spans], count: Count, votes: &G
             silent_rays: spans.iter().map(|s| s.silent_rays).sum(),
             hits: count.hits,
             layers: count.layers,
+            ..LdiReport::default()
         },
         vote: doubts(votes, lattice),
         thin: thin(&lengths, lattice.h),
@@ -97,6 +98,9 @@ pub(super) fn warnings(report: &Report) -> Vec<String> {
              look at the doubtful regions",
             100.0 * silent
         ));
+    }
+    if let Some(reason) = &report.ldi.made_by.fallback {
+        warnings.push(format!("the graphics processor failed, so the main one did its work: {reason}"));
     }
     warnings
 }

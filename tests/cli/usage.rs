@@ -5,7 +5,19 @@ use super::{assert_empty, folder, run, run_in, sample};
 #[test]
 fn help_lists_every_verb_and_every_exit_status() {
     let help = run(&["--help"]).exits(0).text();
-    for word in ["repair", "union", "intersection", "difference", "csg", "sdf", "inspect", "convert", "render", "130"] {
+    for word in [
+        "repair",
+        "union",
+        "intersection",
+        "difference",
+        "csg",
+        "sdf",
+        "inspect",
+        "convert",
+        "render",
+        "devices",
+        "130",
+    ] {
         assert!(help.contains(word), "`{word}` is missing in:\n{help}");
     }
     assert!(run(&["repair", "--help"]).exits(0).text().contains("Make one closed, oriented solid"));
@@ -45,6 +57,17 @@ fn wrong_usage_exits_with_2_and_a_sentence() {
         run_in(&folder, arguments).exits(2).says(&[&words]);
         assert_empty(&folder);
     }
+}
+
+#[cfg(not(feature = "gpu"))]
+#[test]
+fn a_build_without_the_graphics_backend_refuses_it() {
+    let folder = folder();
+    run_in(&folder, "repair testdata/torus.ply -o OUT/a.stl --backend gpu")
+        .exits(2)
+        .says(&["feature `gpu`", "--backend cpu"]);
+    assert_empty(&folder);
+    assert!(run(&["devices"]).exits(0).text().contains("feature `gpu`"));
 }
 
 #[test]

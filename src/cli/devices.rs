@@ -1,0 +1,134 @@
+//! `devices`: the graphics adapters of this machine.
+
+use clap::Args;
+use serde::Serialize;
+
+use super::args::CommonArgs;
+use super::exit::{Exit, Failure};
+use super::report::RunReport;
+
+/// `devices`.
+#[derive(Debug, Args)]
+pub struct DevicesArgs {
+    /// Flags of every verb.
+    #[command(flatten)]
+    pub common: CommonArgs,
+}
+
+/// The adapters, and which ones would be taken.
+#[derive(Debug, Default, Serialize)]
+pub struct DeviceReport {
+    /// Whether the program was built with the feature `gpu`.
+    pub built: bool,
+    /// The adapters.
+    #[cfg(feature = "gpu")]
+    pub adapters: Vec<crate::gpu::AdapterEntry>,
+    /// The adapters: a build without the feature `gpu` finds none.
+    #[cfg(not(feature = "gpu"))]
+    pub adapters: [(); 0],
+    /// Name of the one that `--backend auto` takes for large jobs.
+    pub auto: Option<String>,
+    /// Name of the one that `--backend gpu` takes.
+    pub gpu: Option<String>,
+    /// Why, in a sentence.
+    pub why: String,
+}
+
+/// Lists the adapters.
+pub fn run(args: &DevicesArgs, report: &mut RunReport) -> Result<Exit, Failure> {
+    report.options = serde_json::json!({});
+    let found = report.timed("list", |_| find());
+    if !args.common.json {
+        super::output::write_stream(text(&found).as_bytes())?;
+    }
+    report.devices = Some(found);
+    Ok(Exit::Done)
+}
+
+#[cfg(not(feature = "gpu"))]
+fn find() -> DeviceReport {
+    DeviceReport { why: "this program was built without the feature `gpu`".into(), ..DeviceReport::default() }
+}
+
+#[cfg(not(feature = "gpu"))]
+fn text(found: &DeviceReport) -> String {
+    format!("no adapter: {}\n", found.why)
+}
+
+#[cfg(feature = "gpu")]
+pub use with_gpu::*;
+
+#[cfg(feature = "gpu")]
+mod with_gpu {
+    use super::DeviceReport;
+    use crate::cli::summary::{self, Row};
+    use crate::cli::words;
+    use crate::gpu::{AdapterEntry, AdapterKind, INSTALL, Wanted, adapters};
+
+    pub fn find() -> DeviceReport {
+        let adapters = adapters();
+        let name = |wanted: &Wanted| wanted.choose(&adapters).map(|n| adapters[n].name.clone());
+        let (auto, gpu) = (name(&Wanted::Hardware), name(&Wanted::Any));
+        let why = match (&auto, &gpu) {
+            (Some(name), _) => {
+                format!("{name} is a graphics processor: large jobs go to it, small ones are done sooner here")
+            }
+            (None, Some(name)) => format!("{name} is not known to be faster than the main processor"),
+            (None, None) if adapters.is_empty() => format!("no adapter found; {INSTALL}"),
+            (None, None) => "none of the adapters can make layered depth images".into(),
+        };
+        DeviceReport { built: true, adapters, auto, gpu, why }
+    }
+
+    pub fn text(found: &DeviceReport) -> String {
+        if found.adapters.is_empty() {
+            return format!("{}\n", found.why);
+        }
+        let mut text = String::new();
+        for adapter in &found.adapters {
+            text.push_str(&summary::table(&rows(adapter)));
+            text.push('\n');
+        }
+        let or_cpu = |name: &Option<String>| name.clone().unwrap_or_else(|| "the main processor".into());
+        let choices = [
+            ("--backend auto", format!("{}: {}", or_cpu(&found.auto), found.why)),
+            ("--backend gpu", found.gpu.clone().unwrap_or_else(|| "none".into())),
+        ];
+        text.push_str(&summary::table(&choices));
+        text
+    }
+
+    fn rows(adapter: &AdapterEntry) -> Vec<Row> {
+        let kind = match adapter.kind {
+            AdapterKind::Discrete => "discrete graphics processor",
+            AdapterKind::Integrated => "integrated graphics processor",
+            AdapterKind::Virtual => "virtual graphics processor",
+            AdapterKind::Software => "software, on the main processor",
+            AdapterKind::Other => "unknown",
+        };
+        let can: Vec<String> = [
+            (adapter.scatter, "scatter crossings"),
+            (adapter.peel, "peel layers"),
+            (adapter.timestamps, "time its passes"),
+        ]
+        .iter()
+        .filter(|(can, _)| *can)
+        .map(|(_, what)| what.to_string())
+        .collect();
+        vec![
+            ("adapter", adapter.name.clone()),
+            ("kind", kind.into()),
+            ("driver", format!("{}, {}", adapter.interface, adapter.driver)),
+            (
+                "limits",
+                format!(
+                    "textures of {} pixels a side, {} reachable at once, buffers of {}",
+                    words::count(adapter.texture_side as usize),
+                    words::bytes(adapter.binding_bytes),
+                    words::bytes(adapter.buffer_bytes)
+                ),
+            ),
+            ("can", if can.is_empty() { "nothing that is needed".into() } else { words::list(&can) }),
+        ]
+    }
+}

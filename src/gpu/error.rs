@@ -1,0 +1,81 @@
+//! What can go wrong with a graphics processor.
+
+use crate::progress::Stopped;
+
+/// Why the graphics processor gave no layered depth images.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GpuError {
+    /// Interrupted, or the deadline passed.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// There is no adapter of the kind that was asked for.
+    #[error("no graphics adapter {wanted} was found")]
+    NoAdapter {
+        /// What was asked for, as the end of a sentence.
+        wanted: String,
+        /// The names of those that are there.
+        present: Vec<String>,
+    },
+    /// The adapter is there, but its driver gives no device.
+    #[error("the driver of {adapter} gives no device: {reason}")]
+    NoDevice {
+        /// The adapter's name.
+        adapter: String,
+        /// What the driver said.
+        reason: String,
+    },
+    /// The adapter lacks something that is needed.
+    #[error("{adapter} cannot do this: {lacks}")]
+    Incapable {
+        /// The adapter's name.
+        adapter: String,
+        /// What it lacks.
+        lacks: String,
+    },
+    /// More memory was needed than the adapter has.
+    #[error("the graphics processor has too little memory for this")]
+    OutOfMemory,
+    /// One ray alone is crossed more often than the adapter's buffers hold.
+    #[error("a ray is crossed {crossings} times, and a buffer of the graphics processor holds {most}")]
+    TooLarge {
+        /// Crossings of the ray.
+        crossings: u64,
+        /// The most that fit.
+        most: u64,
+    },
+    /// The driver or wgpu refused a command.
+    #[error("the graphics driver refused a command: {reason}")]
+    Validation {
+        /// What it said.
+        reason: String,
+    },
+    /// The device stopped working, or was taken away.
+    #[error("the graphics processor was lost: {reason}")]
+    Lost {
+        /// What the driver said.
+        reason: String,
+    },
+    /// What came back does not fit what was sent.
+    #[error("the graphics processor computed nonsense in direction {direction}: its driver or memory is faulty")]
+    Nonsense {
+        /// Number of the direction.
+        direction: usize,
+    },
+}
+
+impl GpuError {
+    /// Something to try.
+    pub fn hint(&self) -> &'static str {
+        match self {
+            Self::NoAdapter { present, .. } if present.is_empty() => INSTALL,
+            Self::NoAdapter { .. } => "`meshwright devices` lists the adapters that are there",
+            Self::Stopped(_) => "more time",
+            Self::OutOfMemory => "a larger voxel, or --backend cpu",
+            _ => "--backend cpu gives the same result; a newer graphics driver may help",
+        }
+    }
+}
+
+/// What to install where no adapter is found.
+pub const INSTALL: &str = "install a Vulkan driver: that of your graphics card, or the software one (Debian, Ubuntu: \
+     mesa-vulkan-drivers; Fedora: mesa-vulkan-drivers; Arch: vulkan-swrast)";

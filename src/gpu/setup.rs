@@ -1,0 +1,45 @@
+//! Finding the triangles that may cross the rays of a tile.
+
+use super::run::Run;
+use super::scene::Chunk;
+use super::shaders;
+
+/// Triangles of a workgroup, as in the shader.
+const WIDTH: u32 = 64;
+/// The most workgroups along a side.
+const SIDE: u32 = 32768;
+
+/// The program.
+#[derive(Debug)]
+pub(super) struct Setup {
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl Setup {
+    pub fn new(device: &wgpu::Device) -> Self {
+        Self { pipeline: shaders::compute(device, shaders::SETUP, "set_up", shaders::SETUP_CONSTANTS) }
+    }
+
+    /// Fills the chunks' candidates for one tile. `views`: the tile, for each chunk.
+    pub fn encode(
+        &self,
+        run: &mut Run<'_>,
+        encoder: &mut wgpu::CommandEncoder,
+        chunks: &[Chunk],
+        views: &[wgpu::Buffer],
+    ) {
+        let layout = self.pipeline.get_bind_group_layout(0);
+        for (chunk, view) in chunks.iter().zip(views) {
+            // The number of vertices, counted up by the shader.
+            encoder.clear_buffer(&chunk.arguments, 0, Some(4));
+            let buffers = [view, &chunk.corners, &chunk.candidates, &chunk.numbers, &chunk.arguments];
+            let group = run.bind(&layout, &buffers.map(|buffer| buffer.as_entire_binding()));
+            let timestamp_writes = run.clock.compute("set up");
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            let groups = chunk.count.div_ceil(WIDTH);
+            pass.dispatch_workgroups(groups.min(SIDE), groups.div_ceil(SIDE), 1);
+        }
+    }
+}

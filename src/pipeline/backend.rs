@@ -1,0 +1,206 @@
+//! Which processor makes the layered depth images.
+
+use serde::Serialize;
+
+use super::Error;
+use crate::lattice::Lattice;
+use crate::ldi::{Layers, ldis};
+use crate::mesh::TriMesh;
+use crate::progress::Progress;
+
+/// Which processor makes the layered depth images. The result is the same, to the last bit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Backend {
+    /// The graphics processor where there is a real one and the job is large enough to pay, else the main one.
+    #[default]
+    Auto,
+    /// The main processor.
+    Cpu,
+    /// A graphics adapter, a software one if there is no other. An error in a build without the feature `gpu`.
+    Gpu,
+}
+
+/// Who made the layered depth images.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct BackendReport {
+    /// Never [`Backend::Auto`], except where nothing was made.
+    pub backend: Backend,
+    /// Name of the graphics adapter.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adapter: Option<String>,
+    /// Bytes sent to the graphics adapter.
+    pub bytes_up: u64,
+    /// Bytes read back from it.
+    pub bytes_down: u64,
+    /// Why the main processor did it after all, though a graphics adapter was to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fallback: Option<String>,
+}
+
+/// The LDIs by the processor that `backend` says. `crossings`: how many there will be, about.
+pub(super) fn layers(
+    soup: &TriMesh,
+    lattice: &Lattice,
+    backend: Backend,
+    crossings: f64,
+    progress: &Progress,
+) -> Result<(Vec<Layers>, BackendReport), Error> {
+    let fallback = match backend {
+        Backend::Cpu => None,
+        Backend::Gpu => return gpu::forced(soup, lattice, progress),
+        Backend::Auto => match gpu::if_it_pays(soup, lattice, crossings, progress)? {
+            Some(Ok(made)) => return Ok(made),
+            Some(Err(reason)) => Some(reason),
+            None => None,
+        },
+    };
+    let layers = ldis(soup, lattice, 1, progress)?;
+    Ok((layers, BackendReport { backend: Backend::Cpu, fallback, ..BackendReport::default() }))
+}
+
+#[cfg(feature = "gpu")]
+mod gpu {
+    use super::*;
+    use crate::gpu::{self, AdapterKind, Device, GpuError, GpuOptions, Wanted};
+    use crate::progress::Stopped;
+
+    type Made = (Vec<Layers>, BackendReport);
+
+    pub fn forced(soup: &TriMesh, lattice: &Lattice, progress: &Progress) -> Result<Made, Error> {
+        let failed = |error: GpuError| match error {
+            GpuError::Stopped(stopped) => Error::Stopped(stopped),
+            _ => Error::Gpu { reason: error.to_string(), hint: error.hint().into() },
+        };
+        let device = Device::open(&Wanted::Any).map_err(failed)?;
+        on(&device, soup, lattice, progress).map_err(failed)
+    }
+
+    /// On a real graphics processor, if there is one and it pays; the reason when it failed.
+    pub fn if_it_pays(
+        soup: &TriMesh,
+        lattice: &Lattice,
+        crossings: f64,
+        progress: &Progress,
+    ) -> Result<Option<Result<Made, String>>, Stopped> {
+        let job =
+            Job { crossings, triangles: soup.triangles.len() as f64, threads: rayon::current_num_threads() as f64 };
+        if !job.pays() {
+            return Ok(None);
+        }
+        tried(Device::open(&Wanted::Hardware), soup, lattice, progress)
+    }
+
+    fn tried(
+        device: Result<Device, GpuError>,
+        soup: &TriMesh,
+        lattice: &Lattice,
+        progress: &Progress,
+    ) -> Result<Option<Result<Made, String>>, Stopped> {
+        let device = match device {
+            Ok(device) => device,
+            Err(GpuError::NoAdapter { .. }) => return Ok(None),
+            Err(error) => return Ok(Some(Err(error.to_string()))),
+        };
+        match on(&device, soup, lattice, progress) {
+            Ok(made) => Ok(Some(Ok(made))),
+            Err(GpuError::Stopped(stopped)) => Err(stopped),
+            Err(error) => Ok(Some(Err(format!("{}: {error}", device.entry().name)))),
+        }
+    }
+
+    fn on(device: &Device, soup: &TriMesh, lattice: &Lattice, progress: &Progress) -> Result<Made, GpuError> {
+        let (layers, report) = gpu::ldis(device, soup, lattice, 1, &GpuOptions::default(), progress)?;
+        let entry = device.entry();
+        let software = if entry.kind == AdapterKind::Software { " (software)" } else { "" };
+        let report = BackendReport {
+            backend: Backend::Gpu,
+            adapter: Some(format!("{}{software}", entry.name)),
+            bytes_up: report.bytes_up,
+            bytes_down: report.bytes_down,
+            fallback: None,
+        };
+        Ok((layers, report))
+    }
+
+    /// What decides whether a graphics processor pays.
+    struct Job {
+        crossings: f64,
+        triangles: f64,
+        threads: f64,
+    }
+
+    /// Seconds of one thread of the main processor for a crossing, all in: measured on the bunny at 512.
+    const CPU_SECONDS: f64 = 42e-9;
+    /// Of these, what stays with the main processor: depths and sorting. Measured, too.
+    const HOST_SECONDS: f64 = 33e-9;
+    /// Seconds to open a device and compile the shaders: an estimate for ordinary drivers.
+    const OPEN_SECONDS: f64 = 0.3;
+    /// Bytes a second between the processors: an estimate for half a PCI Express 3 slot.
+    const BANDWIDTH: f64 = 6e9;
+    /// Bytes of a triangle, and of a crossing with its share of rays.
+    const TRIANGLE_BYTES: f64 = 36.0;
+    const CROSSING_BYTES: f64 = 9.0;
+
+    impl Job {
+        fn pays(&self) -> bool {
+            let saved = self.crossings * (CPU_SECONDS - HOST_SECONDS) / self.threads;
+            let moved = self.triangles * TRIANGLE_BYTES + self.crossings * CROSSING_BYTES;
+            saved > OPEN_SECONDS + moved / BANDWIDTH
+        }
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::*;
+
+        #[test]
+        fn a_missing_card_is_passed_over_and_a_failing_one_is_a_reason() {
+            let lattice = Lattice { origin: glam::DVec3::ZERO, h: 1.0, dims: glam::IVec3::splat(4) };
+            let try_with = |error| tried(Err(error), &TriMesh::default(), &lattice, &Progress::none());
+            let missing = GpuError::NoAdapter { wanted: "that is real".into(), present: Vec::new() };
+            assert!(matches!(try_with(missing), Ok(None)));
+            assert!(
+                matches!(try_with(GpuError::OutOfMemory), Ok(Some(Err(reason))) if reason.contains("too little memory"))
+            );
+        }
+
+        #[test]
+        fn only_large_jobs_on_few_threads_pay() {
+            let job = |crossings, threads| Job { crossings, triangles: 1e5, threads }.pays();
+            assert!(!job(1e6, 1.0) && !job(1e7, 2.0));
+            assert!(job(1e8, 1.0) && job(1e9, 2.0));
+            assert!(!job(1e9, 8.0));
+        }
+    }
+}
+
+#[cfg(not(feature = "gpu"))]
+mod gpu {
+    use super::*;
+    use crate::progress::Stopped;
+
+    type Made = (Vec<Layers>, BackendReport);
+
+    pub fn forced(_: &TriMesh, _: &Lattice, _: &Progress) -> Result<Made, Error> {
+        Err(Error::Gpu { reason: "this build has no graphics backend".into(), hint: "--backend cpu".into() })
+    }
+
+    pub fn if_it_pays(_: &TriMesh, _: &Lattice, _: f64, _: &Progress) -> Result<Option<Result<Made, String>>, Stopped> {
+        Ok(None)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::pipeline::{Report, solid};
+
+    #[test]
+    fn why_the_main_processor_stepped_in_is_a_line_of_the_report() {
+        let mut report = Report::default();
+        assert!(solid::warnings(&report).is_empty());
+        report.ldi.made_by.fallback = Some("it melted".into());
+        let lines = solid::warnings(&report);
+        assert!(lines.len() == 1 && lines[0].contains("it melted"), "{lines:?}");
+    }
+}
