@@ -6,6 +6,8 @@ mod common;
 mod lattices;
 #[path = "exact/points.rs"]
 mod points;
+#[path = "exact/prism.rs"]
+mod prism;
 #[path = "exact/shapes.rs"]
 mod shapes;
 #[path = "exact/soups.rs"]

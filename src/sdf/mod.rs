@@ -9,6 +9,7 @@ mod estimate;
 pub mod exact;
 mod march;
 mod neighbours;
+pub mod prism;
 mod smooth;
 
 pub use correct::correct;

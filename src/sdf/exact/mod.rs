@@ -12,6 +12,7 @@ mod feature;
 mod point;
 mod quads;
 mod sides;
+mod slabs;
 mod tiles;
 
 use std::sync::Arc;
@@ -21,6 +22,7 @@ use rayon::prelude::*;
 
 pub use cost::cost;
 pub use point::{ExactDistance, Nearest, PointSign};
+pub use slabs::{Slab, Slabs};
 
 use crate::lattice::{BRICK, Bricks, Grid, Lattice, brick_of};
 use crate::ldi::Expression;
@@ -112,6 +114,18 @@ pub fn exact(
     options: &ExactOptions,
     progress: &Progress,
 ) -> Result<Grid<f32>, ExactError> {
+    let scope = checked_scope(mesh, lattice, options)?;
+    let features = Features::of(mesh, lattice, scope.band);
+    progress.check()?;
+    let filled = tiles::bricks(&features, &scope, progress)?;
+    drop(features);
+    let mut grid = assemble(filled, &scope);
+    sides::settle(&mut grid, mesh, lattice, sign, progress)?;
+    Ok(grid.grid)
+}
+
+/// What is to be filled, or why it cannot be.
+fn checked_scope(mesh: &TriMesh, lattice: &Lattice, options: &ExactOptions) -> Result<Scope, ExactError> {
     let bounds = mesh.bounds().ok_or(ExactError::Empty)?;
     let countable = lattice.dims.min_element() >= 1 && lattice.dims.max_element() <= MOST_VOXELS;
     if !(countable && lattice.h > 0.0 && lattice.h.is_finite()) {
@@ -122,13 +136,7 @@ pub fn exact(
     if let Some(allowed) = options.max_memory.filter(|&allowed| needed > allowed) {
         return Err(ExactError::Memory { needed, allowed });
     }
-    let features = Features::of(mesh, lattice, scope.band);
-    progress.check()?;
-    let filled = tiles::bricks(&features, &scope, progress)?;
-    drop(features);
-    let mut grid = assemble(filled, &scope);
-    sides::settle(&mut grid, mesh, lattice, sign, progress)?;
-    Ok(grid.grid)
+    Ok(scope)
 }
 
 /// The voxels of the bricks that meet the lattice, and a finite band.

@@ -1,0 +1,111 @@
+//! Prism scan conversion: the signed distance in a band around a closed surface, slice by slice (Sigg et al. 2003, §3.4 and §4).
+//!
+//! Every triangle has a [`Frustum`] on either side that holds whatever is nearest to it, its sides and corners included. Slices
+//! along z cut these into convex polygons ([`Table`]); at each voxel of a polygon the exact distance to the triangle is
+//! computed in its own frame ([`Facet`]), and the smallest in absolute value stays. Here this is done on the processor, as the
+//! twin of what [`crate::gpu`] draws (where that is built in): same prisms, same polygons, same distances.
+
+mod facet;
+mod frustum;
+mod surface;
+mod table;
+
+use glam::{DVec2, IVec3};
+use rayon::prelude::*;
+
+pub use facet::Facet;
+pub use frustum::{EDGES, Frustum};
+pub use table::{MOST_CORNERS, Section, Table};
+
+use super::exact::{ExactError, ExactOptions, Slab, Slabs};
+use crate::lattice::{BRICK, Grid, Lattice};
+use crate::mesh::TriMesh;
+use crate::progress::Progress;
+use surface::Surface;
+
+/// The prisms of a surface.
+#[derive(Debug, Default)]
+pub struct Prisms {
+    /// The triangles that have a plane, in their order.
+    pub facets: Vec<Facet>,
+    /// What each can be nearest to.
+    pub frusta: Vec<Frustum>,
+}
+
+impl Prisms {
+    /// Of `mesh`, a closed, oriented manifold, in the coordinates of `lattice`, as far as they matter within `band` (h).
+    pub fn new(mesh: &TriMesh, lattice: &Lattice, band: f64) -> Self {
+        let surface = Surface::new(mesh, lattice);
+        let whole: Vec<usize> = (0..surface.triangles.len()).filter(|&t| surface.normals[t].is_some()).collect();
+        let facet = |&t: &usize| {
+            surface.normals[t].map(|normal| Facet::new(t, surface.corners(t), normal, &surface.pseudonormals))
+        };
+        let facets = whole.par_iter().filter_map(facet).collect();
+        let frusta = whole.par_iter().enumerate();
+        let frusta = frusta.flat_map_iter(|(n, &t)| frustum::frusta(&surface, t, n as u32, band)).collect();
+        Self { facets, frusta }
+    }
+}
+
+/// The signed distance to `mesh`, a closed, oriented manifold, in h and negative inside, at the voxels of `lattice`: what
+/// [`super::exact::exact`] gives with pseudonormals, to 1e-4 h, by scan conversion of prisms on the processor. Memory holds the
+/// prisms, one slab of eight slices, and the result.
+///
+/// # Errors
+/// See [`ExactError`].
+pub fn prism(
+    mesh: &TriMesh,
+    lattice: &Lattice,
+    options: &ExactOptions,
+    progress: &Progress,
+) -> Result<Grid<f32>, ExactError> {
+    let mut slabs = Slabs::new(mesh, lattice, options)?;
+    let prisms = Prisms::new(mesh, lattice, slabs.band());
+    progress.check()?;
+    let table = Table::new(&prisms.frusta, slabs.end().z);
+    let mut sweep = table.sweep();
+    for low in (0..slabs.end().z).step_by(BRICK as usize) {
+        progress.check()?;
+        let mut slab = Slab::new(slabs.end(), low);
+        let active: Vec<Vec<u32>> = sweep.by_ref().take(BRICK as usize).collect();
+        let planes = slab.planes().zip((low..).zip(&active)).par_bridge();
+        planes.for_each(|(values, (z, active))| draw(&prisms, &table, active, z, slabs.end(), values));
+        slabs.add(&slab);
+    }
+    slabs.finish(mesh, lattice, progress)
+}
+
+/// Draws the sections `active` of slice `z`: at each voxel the distance that is smallest in absolute value.
+fn draw(prisms: &Prisms, table: &Table, active: &[u32], z: i32, end: IVec3, values: &mut [f32]) {
+    for &n in active {
+        let section = &table.sections()[n as usize];
+        let frustum = &prisms.frusta[section.frustum as usize];
+        let facet = &prisms.facets[frustum.facet as usize];
+        let corners = section.corners(frustum, z);
+        let low = corners.iter().fold(f64::INFINITY, |low, p| low.min(p.y)).ceil().max(0.0) as i32;
+        let high = corners.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p.y)).floor();
+        for y in low..=(high as i32).min(end.y - 1) {
+            let [from, to] = row(&corners, f64::from(y));
+            for x in (from.ceil().max(0.0) as i32)..=(to.floor().min(f64::from(end.x - 1)) as i32) {
+                let signed = facet.signed(IVec3::new(x, y, z));
+                let best = &mut values[(y * end.x + x) as usize];
+                if signed.abs() < best.abs() {
+                    *best = signed;
+                }
+            }
+        }
+    }
+}
+
+/// Where a row passes through a convex polygon; the ends are in the wrong order where it does not.
+fn row(corners: &[DVec2; MOST_CORNERS], y: f64) -> [f64; 2] {
+    let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
+    for (k, &a) in corners.iter().enumerate() {
+        let b = corners[(k + 1) % MOST_CORNERS];
+        if (a.y <= y) != (b.y <= y) || a.y == y {
+            let x = if a.y == b.y { a.x } else { a.x + (b.x - a.x) * ((y - a.y) / (b.y - a.y)) };
+            ends = [ends[0].min(x), ends[1].max(x)];
+        }
+    }
+    ends
+}
