@@ -24,9 +24,12 @@ use crate::sdf::exact::{self, Band, Cost, ExactError, ExactOptions, Features, Si
 const FLATTER: f64 = 1e6;
 /// Bytes per voxel of the slabs that are in work, beside what is finished.
 const SLAB_BYTES: f64 = 8.0;
-/// Seconds on one core per voxel, and per triangle and voxel of the band's width.
-const SECONDS_PER_VOXEL: f64 = 60e-9;
-const SECONDS_PER_SLICE: f64 = 2e-6;
+/// Seconds on one core per voxel, per triangle, and per triangle and h of the band.
+const SECONDS_PER_VOXEL: f64 = 50e-9;
+const SECONDS_PER_TRIANGLE: f64 = 8e-6;
+const SECONDS_PER_SLICE: f64 = 0.4e-6;
+/// So many h of band add one polyhedron to those that a voxel is in.
+const OVERLAP: f64 = 50.0;
 
 /// The signed distance to `mesh`, in h and negative inside, at the voxels of `lattice`.
 ///
@@ -64,7 +67,8 @@ pub fn cost(mesh: &TriMesh, lattice: &Lattice, band: Band) -> Cost {
     };
     Cost {
         memory: exact.memory + (SLAB_BYTES * voxels * in_work) as u64,
-        seconds: SECONDS_PER_VOXEL * voxels + SECONDS_PER_SLICE * width * mesh.triangles.len() as f64,
+        seconds: SECONDS_PER_VOXEL * voxels * (1.0 + width / OVERLAP)
+            + (SECONDS_PER_TRIANGLE + SECONDS_PER_SLICE * width) * mesh.triangles.len() as f64,
         ..exact
     }
 }
