@@ -2,6 +2,8 @@
 
 mod common;
 
+#[path = "exact/characteristics.rs"]
+mod characteristics;
 #[path = "exact/lattices.rs"]
 mod lattices;
 #[path = "exact/points.rs"]

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """The exact distance field against OpenVDB's meshToVolume (time, values) and libigl's pseudonormal distance (values).
 
-    tools/distance_peers.py PROGRAM [--runs 3] [--only WORD] [--no-values]
+    tools/distance_peers.py PROGRAM [--runs 3] [--only WORD] [--no-values] [--methods characteristics]
 
 Needs numpy, libigl and, for OpenVDB, g++ with libopenvdb-dev and libboost-dev; without these its columns are left out.
 Rows are those of Sigg et al. 2003, Tables 1 to 4. Both programs run on all cores, one after the other, and the
-seconds are those of the field alone: without reading, writing, and what both need once for a process.
+seconds are those of the field alone: without reading, writing, and what both need once for a process. Each of
+`--methods` (comma-separated, may be empty) adds a column with the seconds of that --method of ours. These take closed meshes only: they get what
+`repair --resolution 256` makes of the bunny.
 """
 import argparse
 import json
@@ -83,24 +85,40 @@ def differences(values, truth, h):
     return f"{off:.1e}", str(wrong)
 
 
+def seconds_of(method, source, out, resolution, band, args):
+    """Seconds of the field alone, the least of all runs."""
+    report, seconds = out.with_suffix(".json"), []
+    for _ in range(args.runs):
+        command = [args.program, "sdf", source, "-o", out, "--force", "--resolution", str(resolution), "--band", repr(band),
+                   "--method", method, "--sign", "pseudonormal", "--report", report, "-q"]
+        subprocess.run(command, check=True)
+        found = json.loads(report.read_text())
+        seconds += [stage["seconds"] for stage in found["stages"] if stage["stage"] == "distance"]
+    return min(seconds)
+
+
+def closed(source, folder, args):
+    """The mesh itself if it is a valid solid, else its repair."""
+    out = folder / "closed.obj"
+    subprocess.run([args.program, "repair", source, "-o", out, "--force", "--resolution", "256", "-q"], check=True)
+    return out
+
+
 def row(name, mesh, resolution, share, args, openvdb, folder):
     points, faces = mesh
-    source, out, report = folder / "mesh.obj", folder / "field.nrrd", folder / "report.json"
+    source, out = folder / "mesh.obj", folder / "field.nrrd"
     write_obj(source, points, faces)
     longest = float((points.max(0) - points.min(0)).max())
     h = longest / resolution
     band = share * longest
-    seconds = []
-    for _ in range(args.runs):
-        command = [args.program, "sdf", source, "-o", out, "--resolution", str(resolution), "--band", repr(band),
-                   "--sign", "pseudonormal", "--report", report, "-q"]
-        subprocess.run(command, check=True)
-        found = json.loads(report.read_text())
-        seconds += [stage["seconds"] for stage in found["stages"] if stage["stage"] == "distance"]
+    best = seconds_of("exact", source, out, resolution, band, args)
     values, origin, _ = read_nrrd(out)
     inside = np.abs(values) < np.float32(band)
-    voxels, best = int(inside.sum()), min(seconds)
+    voxels = int(inside.sum())
     cells = [name, f"{resolution}³", f"{share}", f"{voxels / 1e6:.2f}", f"{best:.3f}", f"{best / voxels * 1e9:.0f}"]
+    other = folder / "other.nrrd"
+    solid = closed(source, folder, args) if name == "bunny" and args.methods else source
+    cells += [f"{seconds_of(method, solid, other, resolution, band, args):.3f}" for method in args.methods]
     spread = np.random.default_rng(1).choice(np.flatnonzero(inside.reshape(-1, order="F")), 20_000)
     at = np.stack(np.unravel_index(spread, values.shape, order="F"), 1)
     ours = values[tuple(at.T)].astype(float)
@@ -132,15 +150,17 @@ def main():
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--only", default="")
     parser.add_argument("--no-values", dest="values", action="store_false")
+    parser.add_argument("--methods", type=lambda text: text.split(",") if text else [], default="characteristics")
     args = parser.parse_args()
     args.program = args.program.resolve()
-    rows = [("bunny", read_obj(BUNNY), 256, 0.1)]
+    rows = [("bunny", read_obj(BUNNY), resolution, 0.1) for resolution in (256, 64, 128)]
     rows += [(f"sphere {count}", sphere(times), 256, 0.1) for count, times in SPHERES.items()]
     rows += [("sphere 32768", sphere(6), 256, share) for share in (0.2, 0.4, 0.8)]
     rows += [("sphere 32768", sphere(6), resolution, 0.1) for resolution in (64, 128, 512)]
-    print("| mesh | grid | band | voxels, M | s | ns a voxel | max error h | wrong signs | OpenVDB: voxels, M | s "
+    methods = "".join(f"{method}, s | " for method in args.methods)
+    print(f"| mesh | grid | band | voxels, M | s | ns a voxel | {methods}max error h | wrong signs | OpenVDB: voxels, M | s "
           "| times ours | max error h | wrong signs |")
-    print("|---" * 13 + "|")
+    print("|---" * (13 + len(args.methods)) + "|")
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         openvdb = build_openvdb(folder)

@@ -53,6 +53,8 @@ impl From<VoteChoice> for VoteRule {
 pub enum MethodChoice {
     /// To the nearest triangle, exactly
     Exact,
+    /// The same for closed surfaces, by a polyhedron for every face, edge and vertex: a reference to compare with
+    Characteristics,
     /// The field that repairs are made from: smooth where the surface is broken, extended by fast marching
     Robust,
 }
@@ -61,6 +63,7 @@ impl From<MethodChoice> for DistanceMethod {
     fn from(choice: MethodChoice) -> Self {
         match choice {
             MethodChoice::Exact => Self::Exact,
+            MethodChoice::Characteristics => Self::Characteristics,
             MethodChoice::Robust => Self::Robust,
         }
     }

@@ -90,17 +90,36 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
         BandChoice::Within(length) => Some(length.resolve(&Scale { unit, diagonal, voxel: Some(spacing) })?),
     };
     let method = args.method.into();
+    if method == DistanceMethod::Characteristics {
+        closed_only(args, validity)?;
+    }
     let sign = match args.sign {
         Some(SignChoice::Pseudonormal | SignChoice::Winding) if method == DistanceMethod::Robust => {
             return Err(Failure::usage("--method robust goes by the votes; --sign cannot change that")
                 .hint("--method exact takes any --sign"));
         }
         Some(sign) => sign.into(),
+        None if method == DistanceMethod::Characteristics => DistanceSign::Pseudonormal,
         None if validity.is_valid() && method == DistanceMethod::Exact => DistanceSign::Pseudonormal,
         None => DistanceSign::Votes,
     };
     let (orient, max_memory) = (args.orient.into(), args.max_memory);
     Ok(DistanceOptions { voxel, band, method, sign, orient, max_memory })
+}
+
+/// Refuses what the method of characteristics is not for.
+fn closed_only(args: &SdfArgs, validity: &Validity) -> Result<(), Failure> {
+    if !matches!(args.sign, None | Some(SignChoice::Pseudonormal)) {
+        return Err(Failure::usage("--method characteristics goes by pseudonormals; --sign cannot change that")
+            .hint("--method exact takes any --sign"));
+    }
+    if !validity.is_oriented_manifold() {
+        let problems = validity.problems();
+        let why = problems.first().map_or("It is not.", String::as_str);
+        return Err(Failure::usage(format!("--method characteristics needs a closed, oriented surface. {why}"))
+            .hint("repair it first (`meshwright repair`), or --method exact"));
+    }
+    Ok(())
 }
 
 /// The options as the report states them, after defaults.
@@ -225,6 +244,7 @@ fn say(
     };
     let how = match options.method {
         DistanceMethod::Exact => "distance to the nearest triangle",
+        DistanceMethod::Characteristics => "distance to the nearest triangle, by characteristics",
         DistanceMethod::Robust => "smooth distance, marched outwards",
     };
     rows.push(("done", format!("{how} {reach}; {side}")));

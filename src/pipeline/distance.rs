@@ -12,7 +12,7 @@ use crate::mesh::TriMesh;
 use crate::orient::{OrientMode, OrientReport};
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::{self, Band, ExactError, ExactOptions, Sign};
-use crate::sdf::{self, RobustOptions};
+use crate::sdf::{self, RobustOptions, characteristics};
 use crate::vote::{Jury, VoteReport, VoteRule, Winding, doubts, vote_near_surface};
 
 /// Bytes per stored voxel of the marched field: the field, what is done, and the front.
@@ -28,6 +28,9 @@ const WINDING_SECONDS: f64 = 150e-9;
 pub enum DistanceMethod {
     /// To the nearest triangle, exactly.
     Exact,
+    /// The same by characteristics and scan conversion: for closed, oriented meshes and
+    /// [`DistanceSign::Pseudonormal`] only. A reference to compare with.
+    Characteristics,
     /// The pipelines' own field: smooth where the surface is broken, extended by fast marching.
     Robust,
 }
@@ -53,12 +56,24 @@ pub struct DistanceOptions {
     pub band: Option<f64>,
     /// How the distance is found.
     pub method: DistanceMethod,
-    /// What tells inside from outside; [`DistanceMethod::Robust`] goes by the votes always.
+    /// What tells inside from outside; [`DistanceMethod::Robust`] goes by the votes always,
+    /// [`DistanceMethod::Characteristics`] by pseudonormals.
     pub sign: DistanceSign,
     /// Orientation of the input, unless the sign is by pseudonormals.
     pub orient: OrientMode,
     /// Upper bound for the working memory, bytes; `None`: no bound.
     pub max_memory: Option<u64>,
+}
+
+impl DistanceOptions {
+    /// Whether rays vote.
+    fn votes(&self) -> bool {
+        match self.method {
+            DistanceMethod::Exact => self.sign != DistanceSign::Pseudonormal,
+            DistanceMethod::Characteristics => false,
+            DistanceMethod::Robust => true,
+        }
+    }
 }
 
 /// A field and how it came about.
@@ -138,6 +153,10 @@ pub fn distance(input: &TriMesh, options: &DistanceOptions, progress: &Progress)
             stages.begin("distance")?;
             run.exact(input, Sign::Pseudonormal)?
         }
+        (DistanceMethod::Characteristics, _) => {
+            stages.begin("distance")?;
+            run.characteristics(input)?
+        }
         _ => run.of_soup(input, &mut stages, &mut report)?,
     };
     report.stages = stages.finish();
@@ -167,10 +186,13 @@ fn place(input: &TriMesh, options: &DistanceOptions) -> Result<(Lattice, Band), 
 }
 
 fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOptions) -> DistancePlan {
-    let exact = exact::cost(input, lattice, band);
+    let exact = match options.method {
+        DistanceMethod::Characteristics => characteristics::cost(input, lattice, band),
+        DistanceMethod::Exact | DistanceMethod::Robust => exact::cost(input, lattice, band),
+    };
     let all = lattice.dims.as_dvec3().element_product();
     let (mut memory, mut seconds) = (exact.memory as f64, exact.seconds);
-    if (options.method, options.sign) != (DistanceMethod::Exact, DistanceSign::Pseudonormal) {
+    if options.votes() {
         let votes = Input::of(std::slice::from_ref(input)).votes(lattice);
         memory += votes.memory as f64;
         seconds += votes.seconds;
@@ -192,6 +214,14 @@ fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOption
     }
 }
 
+fn refusal(error: ExactError) -> Error {
+    match error {
+        ExactError::Stopped(stopped) => stopped.into(),
+        ExactError::Empty => Error::Empty { operand: 0 },
+        other => Error::VoxelSize { reason: other.to_string() },
+    }
+}
+
 /// What the ways to a field share.
 struct Run<'a> {
     lattice: Lattice,
@@ -203,11 +233,12 @@ struct Run<'a> {
 impl Run<'_> {
     fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<Grid<f32>, Error> {
         let options = ExactOptions { band: self.band, max_memory: None };
-        exact::exact(mesh, &self.lattice, sign, &options, self.progress).map_err(|error| match error {
-            ExactError::Stopped(stopped) => stopped.into(),
-            ExactError::Empty => Error::Empty { operand: 0 },
-            other => Error::VoxelSize { reason: other.to_string() },
-        })
+        exact::exact(mesh, &self.lattice, sign, &options, self.progress).map_err(refusal)
+    }
+
+    fn characteristics(&self, mesh: &TriMesh) -> Result<Grid<f32>, Error> {
+        let options = ExactOptions { band: self.band, max_memory: None };
+        characteristics::characteristics(mesh, &self.lattice, &options, self.progress).map_err(refusal)
     }
 
     /// By way of orientation, rays and votes.
@@ -243,7 +274,7 @@ impl Run<'_> {
         report.vote = Some(doubts(&votes, lattice));
         stages.begin("distance")?;
         match self.options.method {
-            DistanceMethod::Exact => self.exact(&soup.mesh, Sign::Votes(&votes)),
+            DistanceMethod::Exact | DistanceMethod::Characteristics => self.exact(&soup.mesh, Sign::Votes(&votes)),
             DistanceMethod::Robust => {
                 let near = sdf::robust(&spans, &soup.planes(lattice), &votes, &RobustOptions::default(), progress)?;
                 drop(spans);

@@ -2,8 +2,9 @@
 //!
 //! The *robust* field (Bærentzen §3.3–3.4): the voted volume, estimates from the LDI points,
 //! smoothing, gradient correction, and fast marching to a wanted band. The *exact* field: the distance to the
-//! nearest triangle, at any point or over a lattice.
+//! nearest triangle, at any point or over a lattice; over a lattice also by scan conversion, one polyhedron per feature.
 
+pub mod characteristics;
 mod correct;
 mod estimate;
 pub mod exact;

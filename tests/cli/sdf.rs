@@ -105,6 +105,30 @@ fn soups_go_by_the_votes_unless_told_otherwise() {
 }
 
 #[test]
+fn characteristics_are_for_closed_surfaces() {
+    let folder = folder();
+    let line = "sdf testdata/torus.ply -o OUT/c.nrrd --resolution 32 --method characteristics --json";
+    let json = run_in(&folder, line).exits(0).json();
+    let options = &json["options"];
+    assert_eq!((&options["method"], &options["sign"]), (&"characteristics".into(), &"pseudonormal".into()));
+    let band = json["distance"]["band"].as_f64().expect("a length");
+    field(&folder, "c.nrrd").agrees_with(&mesh("testdata/torus.ply"), band, true);
+    let plan = run_in(&folder, "sdf testdata/torus.ply --method characteristics --plan --json").exits(0).json();
+    assert!(plan["plan"]["seconds"].as_f64().is_some_and(|seconds| seconds > 0.0), "{plan}");
+    for (arguments, words) in [
+        ("testdata/torus.ply --sign votes", ["goes by pseudonormals", "--method exact"]),
+        ("testdata/torus.ply --sign winding", ["goes by pseudonormals", "--method exact"]),
+        ("testdata/open_cube.off", ["a closed, oriented surface", "repair it first"]),
+        ("testdata/open_cube.off --sign pseudonormal", ["edges are open", "repair it first"]),
+        ("testdata/flipped_patches.ply", ["face opposite ways", "repair it first"]),
+    ] {
+        let line = format!("sdf {arguments} -o OUT/d.nrrd --method characteristics");
+        run_in(&folder, &line).exits(2).says(&words);
+    }
+    assert_eq!(names_in(folder.path()), ["c.nrrd"]);
+}
+
+#[test]
 fn the_formats_hold_the_same_numbers() {
     let folder = folder();
     for format in ["nrrd", "npy", "vti"] {

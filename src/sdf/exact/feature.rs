@@ -10,7 +10,7 @@ use crate::mesh::weld::welded_triangles;
 use crate::mesh::{Pseudonormals, TriMesh};
 
 /// Half-spaces a vertex keeps, at most; leaving some out makes its region larger, which costs time only.
-pub(super) const MOST_SIDES: usize = 8;
+pub(in crate::sdf) const MOST_SIDES: usize = 8;
 /// A triangle lower than this, in h, has no face of its own: its edges are as near.
 const LOWEST: f64 = 1e-5;
 /// An edge whose region is narrower than this, in h, at the end of the band lies within the margin of
@@ -19,7 +19,7 @@ const NARROWEST: f64 = 1e-5;
 
 /// The open side of a triangle. Lattice coordinates, as everything here.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Face {
+pub(in crate::sdf) struct Face {
     pub corners: [DVec3; 3],
     /// Unit normal.
     pub normal: DVec3,
@@ -29,7 +29,7 @@ pub(super) struct Face {
 
 /// An edge between two vertices.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Edge {
+pub(in crate::sdf) struct Edge {
     pub start: DVec3,
     /// Unit vector to the other end.
     pub along: DVec3,
@@ -42,7 +42,7 @@ pub(super) struct Edge {
 
 /// A vertex.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Vertex {
+pub(in crate::sdf) struct Vertex {
     pub at: DVec3,
     /// Unit pseudonormal, or zero.
     pub normal: DVec3,
@@ -54,11 +54,11 @@ pub(super) struct Vertex {
 const ROUNDING: f64 = 1e-9;
 
 /// The square of a distance in h, and on which side of the surface the point is: negative inside.
-type Measured = (f64, f64);
+pub(in crate::sdf) type Measured = (f64, f64);
 
 impl Face {
-    /// Where the foot of the perpendicular from `p` lies on the face.
-    fn measure(&self, p: DVec3) -> Option<Measured> {
+    /// `None` where the foot of the perpendicular from `p` is not on the face.
+    pub(in crate::sdf) fn measure(&self, p: DVec3) -> Option<Measured> {
         let over = (0..3).all(|k| self.inner[k].dot(p - self.corners[k]) >= -ROUNDING);
         let side = self.normal.dot(p - self.corners[0]);
         over.then_some((side * side, side))
@@ -66,7 +66,7 @@ impl Face {
 }
 
 impl Edge {
-    fn measure(&self, p: DVec3) -> Option<Measured> {
+    pub(in crate::sdf) fn measure(&self, p: DVec3) -> Option<Measured> {
         let from = p - self.start;
         let along = self.along.dot(from);
         let between = along >= -ROUNDING && along <= self.length + ROUNDING;
@@ -75,7 +75,7 @@ impl Edge {
 }
 
 impl Vertex {
-    fn measure(&self, p: DVec3) -> Option<Measured> {
+    pub(in crate::sdf) fn measure(&self, p: DVec3) -> Option<Measured> {
         let from = p - self.at;
         Some((from.length_squared(), self.normal.dot(from)))
     }
@@ -83,7 +83,7 @@ impl Vertex {
 
 /// All that can be nearest to a point within the band.
 #[derive(Debug, Default)]
-pub(super) struct Features {
+pub(in crate::sdf) struct Features {
     pub faces: Vec<Face>,
     pub edges: Vec<Edge>,
     pub vertices: Vec<Vertex>,
@@ -91,7 +91,7 @@ pub(super) struct Features {
 
 impl Features {
     /// Of `mesh`, in the coordinates of `lattice`, as far as they matter within `reach` (h).
-    pub(super) fn of(mesh: &TriMesh, lattice: &Lattice, reach: f64) -> Self {
+    pub(in crate::sdf) fn of(mesh: &TriMesh, lattice: &Lattice, reach: f64) -> Self {
         let triangles = welded_triangles(mesh);
         let all_edges = Edges::new(&triangles, mesh.positions.len());
         let normals = &Pseudonormals::over(mesh, &triangles, &all_edges);

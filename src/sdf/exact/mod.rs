@@ -20,7 +20,7 @@ use std::sync::Arc;
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-pub use cost::cost;
+pub use cost::{Cost, cost};
 pub use point::{ExactDistance, Nearest, PointSign};
 pub use slabs::{Slab, Slabs};
 
@@ -29,9 +29,9 @@ use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh};
 use crate::progress::{Progress, Stopped};
 use crate::vote::{Votes, Winding};
-use descend::Filled;
-use feature::Features;
-use tiles::Scope;
+pub(in crate::sdf) use descend::Filled;
+pub(in crate::sdf) use feature::{Edge, Face, Features, Measured, Vertex};
+pub(in crate::sdf) use tiles::{MARGIN, Region, Scope};
 
 /// Voxels along an axis, at most.
 const MOST_VOXELS: i32 = 1 << 15;
@@ -114,25 +114,38 @@ pub fn exact(
     options: &ExactOptions,
     progress: &Progress,
 ) -> Result<Grid<f32>, ExactError> {
-    let scope = checked_scope(mesh, lattice, options)?;
-    let features = Features::of(mesh, lattice, scope.band);
-    progress.check()?;
-    let filled = tiles::bricks(&features, &scope, progress)?;
-    drop(features);
-    let mut grid = assemble(filled, &scope);
-    sides::settle(&mut grid, mesh, lattice, sign, progress)?;
-    Ok(grid.grid)
+    let needed = cost(mesh, lattice, options.band).memory;
+    whole(mesh, lattice, sign, options, needed, progress, |scope| {
+        let features = Features::of(mesh, lattice, scope.band);
+        progress.check()?;
+        tiles::bricks(&features, scope, progress)
+    })
 }
 
-/// What is to be filled, or why it cannot be.
-fn checked_scope(mesh: &TriMesh, lattice: &Lattice, options: &ExactOptions) -> Result<Scope, ExactError> {
+/// The field whose bricks `bricks` finds, which takes `needed` bytes: checked before, and given its sides after.
+pub(in crate::sdf) fn whole(
+    mesh: &TriMesh,
+    lattice: &Lattice,
+    sign: Sign<'_>,
+    options: &ExactOptions,
+    needed: u64,
+    progress: &Progress,
+    bricks: impl FnOnce(&Scope) -> Result<Vec<Filled>, Stopped>,
+) -> Result<Grid<f32>, ExactError> {
+    let scope = checked_scope(mesh, lattice, options, needed)?;
+    let mut raw = assemble(bricks(&scope)?, &scope);
+    sides::settle(&mut raw, mesh, lattice, sign, progress)?;
+    Ok(raw.grid)
+}
+
+/// What is to be filled, which takes `needed` bytes, or why it cannot be.
+fn checked_scope(mesh: &TriMesh, lattice: &Lattice, options: &ExactOptions, needed: u64) -> Result<Scope, ExactError> {
     let bounds = mesh.bounds().ok_or(ExactError::Empty)?;
     let countable = lattice.dims.min_element() >= 1 && lattice.dims.max_element() <= MOST_VOXELS;
     if !(countable && lattice.h > 0.0 && lattice.h.is_finite()) {
         return Err(ExactError::Lattice { dims: lattice.dims, h: lattice.h });
     }
     let scope = scope(lattice, options.band, &bounds)?;
-    let needed = cost(mesh, lattice, options.band).memory;
     if let Some(allowed) = options.max_memory.filter(|&allowed| needed > allowed) {
         return Err(ExactError::Memory { needed, allowed });
     }

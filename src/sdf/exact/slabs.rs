@@ -3,7 +3,7 @@
 use glam::IVec3;
 
 use super::descend::Filled;
-use super::{ExactError, ExactOptions, Sign, assemble, checked_scope, sides, tiles};
+use super::{ExactError, ExactOptions, Sign, assemble, checked_scope, cost, sides, tiles};
 use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice};
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
@@ -39,7 +39,10 @@ impl Slabs {
     /// # Errors
     /// See [`ExactError`].
     pub fn new(mesh: &TriMesh, lattice: &Lattice, options: &ExactOptions) -> Result<Self, ExactError> {
-        Ok(Self { scope: checked_scope(mesh, lattice, options)?, filled: Vec::new() })
+        Ok(Self {
+            scope: checked_scope(mesh, lattice, options, cost(mesh, lattice, options.band).memory)?,
+            filled: Vec::new(),
+        })
     }
 
     /// The width of the band, h; finite even for the whole lattice.
