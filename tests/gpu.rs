@@ -7,6 +7,8 @@ mod common;
 mod equal;
 #[path = "gpu/limits.rs"]
 mod limits;
+#[path = "gpu/prism.rs"]
+mod prism;
 #[path = "gpu/process.rs"]
 mod process;
 #[path = "gpu/soups.rs"]

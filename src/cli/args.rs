@@ -227,6 +227,9 @@ pub struct SdfArgs {
     /// How the distance is found
     #[arg(long, value_enum, default_value_t = MethodChoice::Exact)]
     pub method: MethodChoice,
+    /// Which processor draws the slices of --method prism
+    #[arg(long, value_enum, default_value_t = BackendChoice::Auto)]
+    pub backend: BackendChoice,
     /// What tells inside from outside [default: pseudonormal for a valid solid, else votes]
     #[arg(long, value_enum)]
     pub sign: Option<SignChoice>,

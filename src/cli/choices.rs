@@ -55,6 +55,8 @@ pub enum MethodChoice {
     Exact,
     /// The same for closed surfaces, by a polyhedron for every face, edge and vertex: a reference to compare with
     Characteristics,
+    /// The same for closed surfaces, slice by slice from a prism for every triangle, drawn on either processor
+    Prism,
     /// The field that repairs are made from: smooth where the surface is broken, extended by fast marching
     Robust,
 }
@@ -64,6 +66,7 @@ impl From<MethodChoice> for DistanceMethod {
         match choice {
             MethodChoice::Exact => Self::Exact,
             MethodChoice::Characteristics => Self::Characteristics,
+            MethodChoice::Prism => Self::Prism,
             MethodChoice::Robust => Self::Robust,
         }
     }

@@ -1,8 +1,10 @@
 //! `sdf IN -o OUT`: the signed distance to a mesh over a lattice.
 
+use clap::ValueEnum;
 use serde_json::json;
 
 use super::args::SdfArgs;
+use super::backend;
 use super::choices::SignChoice;
 use super::exit::{Exit, Failure};
 use super::input::{self, Input, is_stream};
@@ -90,7 +92,9 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
         BandChoice::Within(length) => Some(length.resolve(&Scale { unit, diagonal, voxel: Some(spacing) })?),
     };
     let method = args.method.into();
-    if method == DistanceMethod::Characteristics {
+    let closed = matches!(method, DistanceMethod::Characteristics | DistanceMethod::Prism);
+    backend::check_built(args.backend)?;
+    if closed {
         closed_only(args, validity)?;
     }
     let sign = match args.sign {
@@ -99,24 +103,25 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
                 .hint("--method exact takes any --sign"));
         }
         Some(sign) => sign.into(),
-        None if method == DistanceMethod::Characteristics => DistanceSign::Pseudonormal,
+        None if closed => DistanceSign::Pseudonormal,
         None if validity.is_valid() && method == DistanceMethod::Exact => DistanceSign::Pseudonormal,
         None => DistanceSign::Votes,
     };
     let (orient, max_memory) = (args.orient.into(), args.max_memory);
-    Ok(DistanceOptions { voxel, band, method, sign, orient, max_memory })
+    Ok(DistanceOptions { voxel, band, method, sign, orient, max_memory, backend: args.backend.into() })
 }
 
-/// Refuses what the method of characteristics is not for.
+/// Refuses what characteristics and prisms are not for.
 fn closed_only(args: &SdfArgs, validity: &Validity) -> Result<(), Failure> {
+    let name = args.method.to_possible_value().map_or_else(String::new, |value| value.get_name().to_string());
     if !matches!(args.sign, None | Some(SignChoice::Pseudonormal)) {
-        return Err(Failure::usage("--method characteristics goes by pseudonormals; --sign cannot change that")
+        return Err(Failure::usage(format!("--method {name} goes by pseudonormals; --sign cannot change that"))
             .hint("--method exact takes any --sign"));
     }
     if !validity.is_oriented_manifold() {
         let problems = validity.problems();
         let why = problems.first().map_or("It is not.", String::as_str);
-        return Err(Failure::usage(format!("--method characteristics needs a closed, oriented surface. {why}"))
+        return Err(Failure::usage(format!("--method {name} needs a closed, oriented surface. {why}"))
             .hint("repair it first (`meshwright repair`), or --method exact"));
     }
     Ok(())
@@ -245,6 +250,7 @@ fn say(
     let how = match options.method {
         DistanceMethod::Exact => "distance to the nearest triangle",
         DistanceMethod::Characteristics => "distance to the nearest triangle, by characteristics",
+        DistanceMethod::Prism => "distance to the nearest triangle, by prisms",
         DistanceMethod::Robust => "smooth distance, marched outwards",
     };
     rows.push(("done", format!("{how} {reach}; {side}")));

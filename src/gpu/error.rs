@@ -1,8 +1,9 @@
 //! What can go wrong with a graphics processor.
 
 use crate::progress::Stopped;
+use crate::sdf::exact::ExactError;
 
-/// Why the graphics processor gave no layered depth images.
+/// Why the graphics processor gave no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GpuError {
     /// Interrupted, or the deadline passed.
@@ -43,6 +44,17 @@ pub enum GpuError {
         /// The most that fit.
         most: u64,
     },
+    /// The slices of a lattice are larger than the adapter's textures.
+    #[error("slices of {} x {} voxels are larger than the graphics processor's textures of {most}", size[0], size[1])]
+    Slice {
+        /// Voxels along x and y.
+        size: [u32; 2],
+        /// The most that fit.
+        most: u32,
+    },
+    /// There is no such field.
+    #[error(transparent)]
+    Field(ExactError),
     /// The driver or wgpu refused a command.
     #[error("the graphics driver refused a command: {reason}")]
     Validation {
@@ -63,6 +75,15 @@ pub enum GpuError {
     },
 }
 
+impl From<ExactError> for GpuError {
+    fn from(error: ExactError) -> Self {
+        match error {
+            ExactError::Stopped(stopped) => Self::Stopped(stopped),
+            other => Self::Field(other),
+        }
+    }
+}
+
 impl GpuError {
     /// Something to try.
     pub fn hint(&self) -> &'static str {
@@ -70,6 +91,7 @@ impl GpuError {
             Self::NoAdapter { present, .. } if present.is_empty() => INSTALL,
             Self::NoAdapter { .. } => "`meshwright devices` lists the adapters that are there",
             Self::Stopped(_) => "more time",
+            Self::Slice { .. } | Self::Field(_) => "a larger voxel, or --backend cpu",
             Self::OutOfMemory => "a larger voxel, or --backend cpu",
             _ => "--backend cpu gives the same result; a newer graphics driver may help",
         }

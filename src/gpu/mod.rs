@@ -1,6 +1,6 @@
-//! Layered depth images on the graphics processor, through Vulkan.
+//! Layered depth images, and distances by scan conversion of prisms ([`prism()`]), on the graphics processor, through Vulkan.
 //!
-//! The device finds which triangles each ray crosses, with the same integers and the same rule for ties as
+//! For layered depth images the device finds which triangles each ray crosses, with the same integers and the same rule for ties as
 //! [`crate::ldi::rasterise`]; the depths are then computed here, by the same function. So the result is the same to the last
 //! bit, on any device and in whatever order its threads run. There are two ways, see [`GpuMethod`].
 
@@ -9,6 +9,7 @@ mod clock;
 mod device;
 mod error;
 mod peel;
+mod prism;
 mod run;
 mod scan;
 mod scatter;
@@ -21,6 +22,7 @@ mod tests;
 pub use adapters::{AdapterEntry, AdapterKind, Wanted, adapters};
 pub use device::{Device, is_waiting};
 pub use error::{GpuError, INSTALL};
+pub use prism::prism;
 
 use std::sync::OnceLock;
 

@@ -12,6 +12,8 @@ pub(super) const SETUP: &[&str] = &[WIDE, TRIANGLE, include_str!("../../shaders/
 pub(super) const PEEL: &[&str] = &[WIDE, TRIANGLE, DRAW, include_str!("../../shaders/peel.wgsl")];
 /// Counting and scattering crossings.
 pub(super) const SCATTER: &[&str] = &[WIDE, TRIANGLE, DRAW, include_str!("../../shaders/scatter.wgsl")];
+/// Slices of prisms.
+pub(super) const PRISM: &[&str] = &[include_str!("../../shaders/prism.wgsl")];
 /// Sums of all before.
 pub(super) const SCAN: &[&str] = &[include_str!("../../shaders/scan.wgsl")];
 /// Integers of 64 bits, for tests.
@@ -95,7 +97,7 @@ mod tests {
 
     #[test]
     fn every_shader_is_valid() {
-        for parts in [SETUP, PEEL, SCATTER, SCAN, CHECK_WIDE] {
+        for parts in [SETUP, PEEL, SCATTER, PRISM, SCAN, CHECK_WIDE] {
             let source = parts.concat();
             let module =
                 naga::front::wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
@@ -109,7 +111,7 @@ mod tests {
     #[test]
     fn every_file_of_the_shaders_folder_is_used() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders");
-        let used: String = [SETUP, PEEL, SCATTER, SCAN, CHECK_WIDE].concat().concat();
+        let used: String = [SETUP, PEEL, SCATTER, PRISM, SCAN, CHECK_WIDE].concat().concat();
         for entry in std::fs::read_dir(folder).expect("the folder of shaders") {
             let path = entry.expect("an entry").path();
             let text = std::fs::read_to_string(&path).expect("a readable shader");

@@ -3,12 +3,14 @@
 use serde::Serialize;
 
 use super::Error;
-use crate::lattice::Lattice;
+use crate::lattice::{Grid, Lattice};
 use crate::ldi::{Layers, ldis};
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
+use crate::sdf;
+use crate::sdf::exact::{ExactError, ExactOptions};
 
-/// Which processor makes the layered depth images. The result is the same, to the last bit.
+/// Which processor makes the layered depth images, the same to the last bit, or the field of prisms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Backend {
@@ -21,7 +23,7 @@ pub enum Backend {
     Gpu,
 }
 
-/// Who made the layered depth images.
+/// Who made the layered depth images, or the field.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct BackendReport {
     /// Never [`Backend::Auto`], except where nothing was made.
@@ -59,10 +61,41 @@ pub(super) fn layers(
     Ok((layers, BackendReport { backend: Backend::Cpu, fallback, ..BackendReport::default() }))
 }
 
+/// The field of [`crate::sdf::prism::prism`] by the processor that `backend` says; a real graphics processor is taken where
+/// there is one, since it does all but sorting the slices.
+pub(super) fn prism(
+    mesh: &TriMesh,
+    lattice: &Lattice,
+    options: &ExactOptions,
+    backend: Backend,
+    progress: &Progress,
+) -> Result<(Grid<f32>, BackendReport), PrismError> {
+    let fallback = match backend {
+        Backend::Cpu => None,
+        Backend::Gpu => return gpu::prism(mesh, lattice, options, progress),
+        Backend::Auto => match gpu::prism_if_real(mesh, lattice, options, progress) {
+            Ok(Some(made)) => return Ok(made),
+            Ok(None) => None,
+            Err(PrismError::Gpu { reason, .. }) => Some(reason),
+            Err(error) => return Err(error),
+        },
+    };
+    let field = sdf::prism::prism(mesh, lattice, options, progress).map_err(PrismError::Field)?;
+    Ok((field, BackendReport { backend: Backend::Cpu, fallback, ..BackendReport::default() }))
+}
+
+/// Why there is no field.
+pub(super) enum PrismError {
+    /// Neither processor could.
+    Field(ExactError),
+    /// The graphics processor could not.
+    Gpu { reason: String, hint: String },
+}
+
 #[cfg(feature = "gpu")]
 mod gpu {
     use super::*;
-    use crate::gpu::{self, AdapterKind, Device, GpuError, GpuOptions, Wanted};
+    use crate::gpu::{self, AdapterKind, Device, GpuError, GpuOptions, GpuReport, Wanted};
     use crate::progress::Stopped;
 
     type Made = (Vec<Layers>, BackendReport);
@@ -111,16 +144,63 @@ mod gpu {
 
     fn on(device: &Device, soup: &TriMesh, lattice: &Lattice, progress: &Progress) -> Result<Made, GpuError> {
         let (layers, report) = gpu::ldis(device, soup, lattice, 1, &GpuOptions::default(), progress)?;
+        let report = made_by(device, &report);
+        Ok((layers, report))
+    }
+
+    pub fn prism(
+        mesh: &TriMesh,
+        lattice: &Lattice,
+        options: &ExactOptions,
+        progress: &Progress,
+    ) -> Result<(Grid<f32>, BackendReport), PrismError> {
+        let device = Device::open(&Wanted::Any).map_err(refused)?;
+        prism_on(&device, mesh, lattice, options, progress)
+    }
+
+    /// On a real graphics processor, if there is one.
+    pub fn prism_if_real(
+        mesh: &TriMesh,
+        lattice: &Lattice,
+        options: &ExactOptions,
+        progress: &Progress,
+    ) -> Result<Option<(Grid<f32>, BackendReport)>, PrismError> {
+        match Device::open(&Wanted::Hardware) {
+            Ok(device) => prism_on(&device, mesh, lattice, options, progress).map(Some),
+            Err(GpuError::NoAdapter { .. }) => Ok(None),
+            Err(error) => Err(refused(error)),
+        }
+    }
+
+    fn prism_on(
+        device: &Device,
+        mesh: &TriMesh,
+        lattice: &Lattice,
+        options: &ExactOptions,
+        progress: &Progress,
+    ) -> Result<(Grid<f32>, BackendReport), PrismError> {
+        let (field, report) = gpu::prism(device, mesh, lattice, options, false, progress).map_err(refused)?;
+        Ok((field, made_by(device, &report)))
+    }
+
+    fn refused(error: GpuError) -> PrismError {
+        match error {
+            GpuError::Stopped(stopped) => PrismError::Field(stopped.into()),
+            GpuError::Field(error) => PrismError::Field(error),
+            error => PrismError::Gpu { reason: error.to_string(), hint: error.hint().into() },
+        }
+    }
+
+    fn made_by(device: &Device, report: &GpuReport) -> BackendReport {
         let entry = device.entry();
         let software = if entry.kind == AdapterKind::Software { " (software)" } else { "" };
-        let report = BackendReport {
+        BackendReport {
             backend: Backend::Gpu,
             adapter: Some(format!("{}{software}", entry.name)),
             bytes_up: report.bytes_up,
             bytes_down: report.bytes_down,
             fallback: None,
-        };
-        Ok((layers, report))
+        }
     }
 
     /// What decides whether a graphics processor pays.
@@ -187,6 +267,24 @@ mod gpu {
     }
 
     pub fn if_it_pays(_: &TriMesh, _: &Lattice, _: f64, _: &Progress) -> Result<Option<Result<Made, String>>, Stopped> {
+        Ok(None)
+    }
+
+    pub fn prism(
+        _: &TriMesh,
+        _: &Lattice,
+        _: &ExactOptions,
+        _: &Progress,
+    ) -> Result<(Grid<f32>, BackendReport), PrismError> {
+        Err(PrismError::Gpu { reason: "this build has no graphics backend".into(), hint: "--backend cpu".into() })
+    }
+
+    pub fn prism_if_real(
+        _: &TriMesh,
+        _: &Lattice,
+        _: &ExactOptions,
+        _: &Progress,
+    ) -> Result<Option<(Grid<f32>, BackendReport)>, PrismError> {
         Ok(None)
     }
 }

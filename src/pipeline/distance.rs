@@ -4,8 +4,9 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::backend::{self, PrismError};
 use super::plan::Input;
-use super::{Error, StageTime, VoxelSize, prepare, solid, stages};
+use super::{Backend, BackendReport, Error, StageTime, VoxelSize, prepare, solid, stages};
 use crate::lattice::{BRICK, Grid, Lattice, Slot};
 use crate::ldi::{Expression, MAX_VOXELS, Spans, ldis, spans};
 use crate::mesh::TriMesh;
@@ -31,6 +32,9 @@ pub enum DistanceMethod {
     /// The same by characteristics and scan conversion: for closed, oriented meshes and
     /// [`DistanceSign::Pseudonormal`] only. A reference to compare with.
     Characteristics,
+    /// The same by scan conversion of a prism for every triangle, on either processor: for closed, oriented meshes and
+    /// [`DistanceSign::Pseudonormal`] only.
+    Prism,
     /// The pipelines' own field: smooth where the surface is broken, extended by fast marching.
     Robust,
 }
@@ -57,8 +61,10 @@ pub struct DistanceOptions {
     /// How the distance is found.
     pub method: DistanceMethod,
     /// What tells inside from outside; [`DistanceMethod::Robust`] goes by the votes always,
-    /// [`DistanceMethod::Characteristics`] by pseudonormals.
+    /// [`DistanceMethod::Characteristics`] and [`DistanceMethod::Prism`] by pseudonormals.
     pub sign: DistanceSign,
+    /// Which processor makes the field of prisms; the others are made by the main one.
+    pub backend: Backend,
     /// Orientation of the input, unless the sign is by pseudonormals.
     pub orient: OrientMode,
     /// Upper bound for the working memory, bytes; `None`: no bound.
@@ -70,7 +76,7 @@ impl DistanceOptions {
     fn votes(&self) -> bool {
         match self.method {
             DistanceMethod::Exact => self.sign != DistanceSign::Pseudonormal,
-            DistanceMethod::Characteristics => false,
+            DistanceMethod::Characteristics | DistanceMethod::Prism => false,
             DistanceMethod::Robust => true,
         }
     }
@@ -108,6 +114,8 @@ pub struct DistanceReport {
     pub orient: Option<OrientReport>,
     /// The votes, where there were any.
     pub vote: Option<VoteReport>,
+    /// Which processor made the field, where there is a choice.
+    pub made_by: Option<BackendReport>,
     /// Wall-clock time of each stage, in order.
     pub stages: Vec<StageTime>,
 }
@@ -157,6 +165,12 @@ pub fn distance(input: &TriMesh, options: &DistanceOptions, progress: &Progress)
             stages.begin("distance")?;
             run.characteristics(input)?
         }
+        (DistanceMethod::Prism, _) => {
+            stages.begin("distance")?;
+            let (field, made_by) = run.prism(input)?;
+            report.made_by = Some(made_by);
+            field
+        }
         _ => run.of_soup(input, &mut stages, &mut report)?,
     };
     report.stages = stages.finish();
@@ -188,7 +202,7 @@ fn place(input: &TriMesh, options: &DistanceOptions) -> Result<(Lattice, Band), 
 fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOptions) -> DistancePlan {
     let exact = match options.method {
         DistanceMethod::Characteristics => characteristics::cost(input, lattice, band),
-        DistanceMethod::Exact | DistanceMethod::Robust => exact::cost(input, lattice, band),
+        DistanceMethod::Exact | DistanceMethod::Prism | DistanceMethod::Robust => exact::cost(input, lattice, band),
     };
     let all = lattice.dims.as_dvec3().element_product();
     let (mut memory, mut seconds) = (exact.memory as f64, exact.seconds);
@@ -241,6 +255,15 @@ impl Run<'_> {
         characteristics::characteristics(mesh, &self.lattice, &options, self.progress).map_err(refusal)
     }
 
+    fn prism(&self, mesh: &TriMesh) -> Result<(Grid<f32>, BackendReport), Error> {
+        let options = ExactOptions { band: self.band, max_memory: None };
+        let made = backend::prism(mesh, &self.lattice, &options, self.options.backend, self.progress);
+        made.map_err(|error| match error {
+            PrismError::Field(error) => refusal(error),
+            PrismError::Gpu { reason, hint } => Error::Gpu { reason, hint },
+        })
+    }
+
     /// By way of orientation, rays and votes.
     fn of_soup(
         &self,
@@ -274,7 +297,9 @@ impl Run<'_> {
         report.vote = Some(doubts(&votes, lattice));
         stages.begin("distance")?;
         match self.options.method {
-            DistanceMethod::Exact | DistanceMethod::Characteristics => self.exact(&soup.mesh, Sign::Votes(&votes)),
+            DistanceMethod::Exact | DistanceMethod::Characteristics | DistanceMethod::Prism => {
+                self.exact(&soup.mesh, Sign::Votes(&votes))
+            }
             DistanceMethod::Robust => {
                 let near = sdf::robust(&spans, &soup.planes(lattice), &votes, &RobustOptions::default(), progress)?;
                 drop(spans);

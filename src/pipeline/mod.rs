@@ -191,7 +191,7 @@ pub enum Error {
         /// Canals found.
         count: u32,
     },
-    /// [`Backend::Gpu`] was asked for and cannot do it.
+    /// The graphics processor was asked for and cannot do it.
     #[error("{reason}")]
     Gpu {
         /// One sentence: why.

@@ -21,6 +21,11 @@ pub fn data(folder: &str) -> Vec<(String, TriMesh)> {
     paths.iter().map(|path| (file_name(path), read(path))).collect()
 }
 
+/// A mesh of our own.
+pub fn sample(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("testdata").join(name)
+}
+
 /// One mesh file.
 pub fn read(path: &Path) -> TriMesh {
     meshwright::io::read(path).unwrap_or_else(|e| panic!("{e}")).mesh
@@ -126,5 +131,36 @@ pub mod stages {
     /// The planes of a mesh's triangles, lattice coordinates.
     pub fn planes_of(mesh: &TriMesh, lattice: &Lattice) -> Vec<Plane> {
         (0..mesh.triangles.len()).map(|t| Plane::through(mesh.corners(t).map(|p| lattice.to_lattice(p)))).collect()
+    }
+}
+
+/// Distances over lattices.
+pub mod fields {
+    use glam::IVec3;
+    use meshwright::lattice::Grid;
+    use meshwright::vote::voxel_in_brick;
+
+    fn voxel(brick: IVec3, n: usize) -> IVec3 {
+        brick * 8 + voxel_in_brick(n)
+    }
+
+    /// The largest difference in the band, voxels with other sides, and voxels of the band.
+    pub fn apart(truth: &Grid<f32>, found: &Grid<f32>, band: f64) -> (f64, usize, usize) {
+        let (mut most, mut wrong, mut count) = (0.0f64, 0, 0);
+        for (n, &brick) in truth.bricks.active().iter().enumerate() {
+            for k in 0..512 {
+                let (a, b) = (f64::from(truth.values[n][k]), f64::from(found.get(voxel(brick, k))));
+                if a.abs() < band - 1e-4 {
+                    count += 1;
+                    most = most.max((a.abs() - b.abs()).abs());
+                }
+                wrong += usize::from((a < 0.0) != (b < 0.0) && a.abs() > 1e-4);
+            }
+        }
+        for &brick in found.bricks.active() {
+            let ends = [voxel(brick, 0), voxel(brick, 511)];
+            wrong += ends.iter().filter(|&&v| (truth.get(v) < 0.0) != (found.get(v) < 0.0)).count();
+        }
+        (most, wrong, count)
     }
 }

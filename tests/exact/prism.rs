@@ -1,7 +1,7 @@
 //! Prism scan conversion against the exact field.
 
 use glam::DVec3;
-use meshwright::lattice::{Grid, Lattice};
+use meshwright::lattice::Lattice;
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
 use meshwright::sdf::exact::{Band, ExactOptions, Sign, exact};
@@ -9,34 +9,14 @@ use meshwright::sdf::prism::prism;
 use proptest::prelude::*;
 
 use super::common;
-use super::shapes::{ball, closed, lattice, turned, voxel};
+use super::shapes::{ball, closed, lattice, turned};
 
 /// How far the prisms' field is from the exact one, h, and how many voxels of the band have another side.
 fn differences(mesh: &TriMesh, lattice: &Lattice, band: f64) -> (f64, usize, usize) {
     let options = ExactOptions { band: Band::Within(band), max_memory: None };
     let truth = exact(mesh, lattice, Sign::Pseudonormal, &options, &Progress::none()).expect("a field");
     let found = prism(mesh, lattice, &options, &Progress::none()).expect("a field");
-    apart(&truth, &found, band)
-}
-
-/// The largest difference in the band, voxels with other sides, and voxels of the band.
-pub fn apart(truth: &Grid<f32>, found: &Grid<f32>, band: f64) -> (f64, usize, usize) {
-    let (mut most, mut wrong, mut count) = (0.0f64, 0, 0);
-    for (n, &brick) in truth.bricks.active().iter().enumerate() {
-        for k in 0..512 {
-            let (a, b) = (f64::from(truth.values[n][k]), f64::from(found.get(voxel(brick, k))));
-            if a.abs() < band - 1e-4 {
-                count += 1;
-                most = most.max((a.abs() - b.abs()).abs());
-            }
-            wrong += usize::from((a < 0.0) != (b < 0.0) && a.abs() > 1e-4);
-        }
-    }
-    for &brick in found.bricks.active() {
-        let ends = [voxel(brick, 0), voxel(brick, 511)];
-        wrong += ends.iter().filter(|&&v| (truth.get(v) < 0.0) != (found.get(v) < 0.0)).count();
-    }
-    (most, wrong, count)
+    common::fields::apart(&truth, &found, band)
 }
 
 #[test]
