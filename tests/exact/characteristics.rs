@@ -170,3 +170,21 @@ proptest! {
         compare("star", &mesh, &lattice(&mesh, h, 2), Band::Within(width));
     }
 }
+
+#[test]
+fn nearly_flat_ridges_of_a_thin_plate() {
+    let bend = 1e-8;
+    let ridge = |z: f64| {
+        let point = move |y: f64| [-4.3, 0.0, 4.3].map(|x: f64| DVec3::new(x, y, z + bend * (4.3 - x.abs())));
+        [point(-4.3), point(4.3)]
+    };
+    let positions = [ridge(1e-6), ridge(0.0)].into_iter().flatten().flatten().collect();
+    let mut triangles: Vec<[u32; 3]> = vec![[6, 0, 3], [6, 3, 9], [8, 5, 2], [8, 11, 5]];
+    for k in 0..2 {
+        triangles.extend([[k, k + 1, k + 4], [k, k + 4, k + 3], [6 + k, k + 10, k + 7], [6 + k, k + 9, k + 10]]);
+        triangles.extend([[6 + k, k + 7, k + 1], [6 + k, k + 1, k], [9 + k, k + 4, k + 10], [9 + k, k + 3, k + 4]]);
+    }
+    let mesh = TriMesh { positions, triangles };
+    let around = Lattice { origin: DVec3::splat(-10.0), h: 0.5, dims: IVec3::splat(41) };
+    compare("plate", &mesh, &around, Band::Within(12.0));
+}

@@ -19,9 +19,6 @@ use crate::mesh::TriMesh;
 use crate::progress::Progress;
 use crate::sdf::exact::{self, Band, Cost, ExactError, ExactOptions, Features, Sign};
 
-/// Features are left out for being flat only if their regions are narrower by this factor than those that
-/// [`exact()`](crate::sdf::exact::exact) leaves out: a voxel is only asked of faces that are below it, not of those a little aside.
-const FLATTER: f64 = 1e6;
 /// Bytes per voxel of the slabs that are in work, beside what is finished.
 const SLAB_BYTES: f64 = 8.0;
 /// Seconds on one core per voxel, per triangle, and per triangle and h of the band.
@@ -49,7 +46,7 @@ pub fn characteristics(
 ) -> Result<Grid<f32>, ExactError> {
     let needed = cost(mesh, lattice, options.band).memory;
     exact::whole(mesh, lattice, Sign::Pseudonormal, options, needed, progress, |scope| {
-        let features = Features::of(mesh, lattice, FLATTER * scope.band);
+        let features = Features::of(mesh, lattice, scope.band);
         progress.check()?;
         scan::bricks(&features, scope, progress)
     })

@@ -13,9 +13,9 @@ use crate::mesh::{Pseudonormals, TriMesh};
 pub(in crate::sdf) const MOST_SIDES: usize = 8;
 /// A triangle lower than this, in h, has no face of its own: its edges are as near.
 const LOWEST: f64 = 1e-5;
-/// An edge whose region is narrower than this, in h, at the end of the band lies within the margin of
-/// its faces' regions.
-const NARROWEST: f64 = 1e-5;
+/// An edge whose region is narrower than this, in h, at the end of the band lies within what counts as over its faces, see
+/// [`ROUNDING`]; with more, a voxel over the gap between them would have neither.
+const NARROWEST: f64 = 1e-10;
 
 /// The open side of a triangle. Lattice coordinates, as everything here.
 #[derive(Debug, Clone, Copy)]
