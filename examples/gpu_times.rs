@@ -1,13 +1,15 @@
-//! Times of the layered depth images on the graphics processor and on the main one, for docs/benchmarks.md:
+//! Times of the layered depth images, and of prism scan conversion, on the graphics processor and on the main one, for docs/benchmarks.md:
 //! `cargo run --release --example gpu_times -- MESH RESOLUTION...`
 
 use std::time::Instant;
 
-use meshwright::gpu::{Device, GpuMethod, GpuOptions, Wanted, ldis};
+use meshwright::gpu::{self, Device, GpuMethod, GpuOptions, Wanted, ldis};
 use meshwright::lattice::{BRICK_VOXELS, Lattice};
 use meshwright::ldi::{self, Crossed, Expression, Hit, Layers, Operands, Spans, assemble, snap};
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
+use meshwright::sdf::exact::{Band, ExactOptions};
+use meshwright::sdf::prism::{Prisms, Table, prism};
 use meshwright::vote::{Jury, VoteRule, Votes, Winding, vote_near_surface};
 use rayon::prelude::*;
 
@@ -49,6 +51,38 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 println!("    {}: {} passes, {:.1} ms", pass.pass, pass.count, 1e3 * pass.seconds);
             }
         }
+        prisms(&device, &mesh, &lattice)?;
+    }
+    Ok(())
+}
+
+/// The distance within a tenth of the longest side, by prisms on either processor; for closed meshes.
+fn prisms(device: &Device, mesh: &TriMesh, lattice: &Lattice) -> Result<(), Box<dyn std::error::Error>> {
+    let band = f64::from(lattice.dims.max_element()) / 10.0;
+    let room = band.ceil() as i32;
+    let origin = lattice.origin - glam::DVec3::splat(f64::from(room) * lattice.h);
+    let lattice = Lattice { origin, dims: lattice.dims + 2 * room, ..*lattice };
+    let options = ExactOptions { band: Band::Within(band), max_memory: None };
+    let cpu = best(|| Ok(prism(mesh, &lattice, &options, &Progress::none())?))?;
+    let drawn = |timings| gpu::prism(device, mesh, &lattice, &options, timings, &Progress::none());
+    let time = best(|| Ok(drawn(false)?.0))?;
+    let setup = best(|| {
+        let prisms = Prisms::new(mesh, &lattice, band);
+        let table = Table::new(&prisms.frusta, lattice.dims.z);
+        Ok(table.sweep().map(|listed| listed.len()).sum::<usize>())
+    })?;
+    let prisms = Prisms::new(mesh, &lattice, band);
+    let polygons: usize = Table::new(&prisms.frusta, lattice.dims.z).sweep().map(|listed| listed.len()).sum();
+    let (_, report) = drawn(true)?;
+    println!(
+        "  prisms: processor {cpu:.0} ms, drawn {time:.0} ms, of it frusta and edge tables {setup:.0} ms; {} frusta, {polygons} polygons, \
+         {:.1} MB up, {:.1} MB down",
+        prisms.frusta.len(),
+        report.bytes_up as f64 * 1e-6,
+        report.bytes_down as f64 * 1e-6
+    );
+    for pass in report.passes {
+        println!("    {}: {} passes, {:.1} ms", pass.pass, pass.count, 1e3 * pass.seconds);
     }
     Ok(())
 }

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """The exact distance field against OpenVDB's meshToVolume (time, values) and libigl's pseudonormal distance (values).
 
-    tools/distance_peers.py PROGRAM [--runs 3] [--only WORD] [--no-values] [--methods characteristics]
+    tools/distance_peers.py PROGRAM [--runs 3] [--only WORD] [--no-values] [--no-openvdb]
+                            [--methods characteristics,prism@cpu,prism@gpu]
 
 Needs numpy, libigl and, for OpenVDB, g++ with libopenvdb-dev and libboost-dev; without these its columns are left out.
 Rows are those of Sigg et al. 2003, Tables 1 to 4. Both programs run on all cores, one after the other, and the
 seconds are those of the field alone: without reading, writing, and what both need once for a process. Each of
-`--methods` (comma-separated, may be empty) adds a column with the seconds of that --method of ours. These take closed meshes only: they get what
+`--methods` (comma-separated, may be empty; METHOD@BACKEND) adds a column with the seconds of that --method of ours. These take closed meshes only: they get what
 `repair --resolution 256` makes of the bunny.
 """
 import argparse
@@ -21,6 +22,7 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parent.parent
 BUNNY = ROOT.parent / "shared" / "data" / "broken" / "stanford-bunny.obj"
+KNOT = ROOT.parent / "shared" / "data" / "clean" / "quadknot.obj"
 SPHERES = {2048: 4, 8192: 5, 32768: 6, 131072: 7}
 
 
@@ -42,7 +44,8 @@ def sphere(times):
 def read_obj(path):
     lines = [line.split() for line in open(path, encoding="utf-8", errors="replace")]
     points = np.array([line[1:4] for line in lines if line and line[0] == "v"], float)
-    faces = [[int(word.split("/")[0]) - 1 for word in line[1:4]] for line in lines if line and line[0] == "f"]
+    polygons = [[int(word.split("/")[0]) - 1 for word in line[1:]] for line in lines if line and line[0] == "f"]
+    faces = [[p[0], p[k], p[k + 1]] for p in polygons for k in range(1, len(p) - 1)]
     return points, np.array(faces)
 
 
@@ -88,9 +91,11 @@ def differences(values, truth, h):
 def seconds_of(method, source, out, resolution, band, args):
     """Seconds of the field alone, the least of all runs."""
     report, seconds = out.with_suffix(".json"), []
+    method, _, backend = method.partition("@")
     for _ in range(args.runs):
         command = [args.program, "sdf", source, "-o", out, "--force", "--resolution", str(resolution), "--band", repr(band),
                    "--method", method, "--sign", "pseudonormal", "--report", report, "-q"]
+        command += ["--backend", backend] if backend else []
         subprocess.run(command, check=True)
         found = json.loads(report.read_text())
         seconds += [stage["seconds"] for stage in found["stages"] if stage["stage"] == "distance"]
@@ -150,10 +155,12 @@ def main():
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--only", default="")
     parser.add_argument("--no-values", dest="values", action="store_false")
+    parser.add_argument("--no-openvdb", dest="openvdb", action="store_false")
     parser.add_argument("--methods", type=lambda text: text.split(",") if text else [], default="characteristics")
     args = parser.parse_args()
     args.program = args.program.resolve()
     rows = [("bunny", read_obj(BUNNY), resolution, 0.1) for resolution in (256, 64, 128)]
+    rows += [("knot", read_obj(KNOT), 256, 0.1)]
     rows += [(f"sphere {count}", sphere(times), 256, 0.1) for count, times in SPHERES.items()]
     rows += [("sphere 32768", sphere(6), 256, share) for share in (0.2, 0.4, 0.8)]
     rows += [("sphere 32768", sphere(6), resolution, 0.1) for resolution in (64, 128, 512)]
@@ -163,7 +170,7 @@ def main():
     print("|---" * (13 + len(args.methods)) + "|")
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        openvdb = build_openvdb(folder)
+        openvdb = build_openvdb(folder) if args.openvdb else None
         for name, mesh, resolution, share in rows:
             if args.only in f"{name} {resolution} {share}":
                 cells = row(name, mesh, resolution, share, args, openvdb, folder)

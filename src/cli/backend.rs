@@ -44,14 +44,14 @@ pub fn expects_panic() -> bool {
     false
 }
 
-/// Who found the crossings, in words.
-pub fn words(made_by: &BackendReport) -> String {
+/// Who did it, in words that begin with what was done.
+pub fn words(made_by: &BackendReport, done: &str) -> String {
     match &made_by.adapter {
         Some(adapter) => format!(
-            "found by {adapter}; {} sent to it, {} read back",
+            "{done} by {adapter}; {} sent to it, {} read back",
             words::bytes(made_by.bytes_up),
             words::bytes(made_by.bytes_down)
         ),
-        None => "found by the main processor".into(),
+        None => format!("{done} by the main processor"),
     }
 }

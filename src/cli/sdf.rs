@@ -49,6 +49,8 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
         output::write_grid(path, &samples, format, session)
     })?;
     report.output = Some(entry);
+    let fallback = outcome.report.made_by.as_ref().and_then(|made_by| made_by.fallback.as_ref());
+    report.warnings.extend(fallback.map(|reason| format!("the main processor drew the slices: {reason}")));
     report.distance = Some(outcome.report.clone());
     let broken = limits::broken(report, options.max_memory);
     report.warnings.extend(broken.iter().cloned());
@@ -254,6 +256,9 @@ fn say(
         DistanceMethod::Robust => "smooth distance, marched outwards",
     };
     rows.push(("done", format!("{how} {reach}; {side}")));
+    if let Some(made_by) = distance.made_by.as_ref().filter(|made_by| made_by.adapter.is_some()) {
+        rows.push(("done", format!("slices {}", backend::words(made_by, "drawn"))));
+    }
     rows.push(("voxel", summary::voxel(distance.voxel, distance.dims, unit)));
     if let Some(output) = &report.output {
         let [low, high] = distance.range.map(|value| words::number(value.into()));

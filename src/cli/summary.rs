@@ -219,7 +219,7 @@ fn details(report: &RunReport, pipeline: &Report, unit: UnitName<'_>) -> Vec<Row
             words::count(pipeline.ldi.layers)
         ),
     ));
-    rows.push(("rays", super::backend::words(&pipeline.ldi.made_by)));
+    rows.push(("rays", super::backend::words(&pipeline.ldi.made_by, "found")));
     let (doubtful, voxels) = (words::plural(vote.doubtful, "voxel"), words::count(vote.voxels));
     rows.push(("doubt", format!("{doubtful} of {voxels} near the surface")));
     for region in vote.doubtful_regions.iter().take(5) {

@@ -129,6 +129,28 @@ fn characteristics_are_for_closed_surfaces() {
 }
 
 #[test]
+fn prisms_give_the_exact_field() {
+    let folder = folder();
+    let values = |method: &str| {
+        let line =
+            format!("sdf testdata/monkey_saddle.off -o OUT/{method}.npy --resolution 40 --band 5h --method {method}");
+        let said = run_in(&folder, &format!("{line} --backend cpu")).exits(0);
+        let bytes = std::fs::read(folder.path().join(format!("{method}.npy"))).expect("a field");
+        let start = bytes.len() % 4;
+        let numbers: Vec<f32> =
+            bytes[start..].chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+        (numbers, said.stderr)
+    };
+    let (exact, (prism, said)) = (values("exact").0, values("prism"));
+    assert!(said.contains("by prisms"), "{said}");
+    let header = 128 / 4;
+    let apart = exact[header..].iter().zip(&prism[header..]).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    assert!(exact.len() == prism.len() && apart < 1e-3, "{apart}");
+    run_in(&folder, "sdf testdata/open_cube.off -o OUT/a.npy --method prism").exits(2).says(&["--method prism needs"]);
+    run_in(&folder, "sdf testdata/torus.ply -o OUT/a.npy --method prism --sign votes").exits(2).says(&["--sign"]);
+}
+
+#[test]
 fn the_formats_hold_the_same_numbers() {
     let folder = folder();
     for format in ["nrrd", "npy", "vti"] {
@@ -208,7 +230,7 @@ fn wrong_usage_and_inputs_that_enclose_nothing() {
         ("testdata/torus.ply -o OUT/a.nrrd --band 1mm", 2, "--unit"),
         ("testdata/torus.ply -o OUT/a.nrrd --voxel 2h", 2, "it is the voxel"),
         ("testdata/torus.ply -o OUT/a.nrrd --band 100000h", 4, "narrower band"),
-        ("testdata/torus.ply -o OUT/a.nrrd --method prism", 2, "prism"),
+        ("testdata/torus.ply -o OUT/a.nrrd --method guess", 2, "guess"),
         ("testdata/torus.ply -o OUT/nowhere/a.nrrd", 2, "nowhere"),
         ("testdata/absent.ply -o OUT/a.nrrd", 4, "absent.ply"),
         ("testdata/open_sheet.obj -o OUT/a.nrrd --resolution 32", 4, "enclose"),
