@@ -291,8 +291,12 @@ fn pits_gaps_necks_and_cavities_are_told_from_tunnels_and_inner_edges_from_all()
     assert_eq!(gap.kind, CanalKind::Gap);
     assert!((gap.diameter - 0.09).abs() < 0.01, "{gap:?}");
 
-    let report = listed(&angle(), 0.2, Remove::All).2;
-    assert!(report.canals.is_empty() && report.roundings > 0, "{report:?}");
+    // A tray's inner edges and corners, rounded by balls of several sizes.
+    let tray = without(block(), vec![cuboid(DVec3::new(0.2, 0.2, 0.3), DVec3::new(0.8, 0.8, 1.0))]);
+    for (mesh, diameter) in [(angle(), 0.2), (tray.clone(), 0.1), (tray.clone(), 0.23), (tilted(tray), 0.3)] {
+        let report = listed(&mesh, diameter, Remove::All).2;
+        assert!(report.canals.is_empty() && report.roundings > 0, "{report:?}");
+    }
 }
 
 #[test]

@@ -37,6 +37,7 @@ fn check(name: &str, mesh: &TriMesh) {
 
 #[test]
 fn drawn_prisms_give_the_exact_field() {
+    check("ball with a void", &read(&super::common::sample("hollow_ball.stl")));
     check("torus", &shapes::torus(96, 48));
     check("knot", &read(&data_folder().join("clean/quadknot.obj")));
     check("fandisk", &read(&data_folder().join("clean/fandisk.off")));

@@ -2,7 +2,7 @@
 //!
 //! The voxels that the closing fills fall into connected parts. Each part meets the solid, and where the ball comes near,
 //! the open: its mouths. Filling one changes the solid's handles by what its voxels' Euler number says, which tells
-//! tunnels from the rounding of inner edges; a part with one mouth is a pit if it is deeper than wide.
+//! tunnels from the rounding of inner edges; a part with one mouth is a pit if it is half again deeper than wide.
 
 mod fill;
 mod passage;
@@ -25,7 +25,7 @@ use fill::{Fill, Part};
 pub enum CanalKind {
     /// It leads through: filling it takes handles away.
     Tunnel,
-    /// It ends blindly, deeper than wide: a narrow hole, a groove, a crack.
+    /// It ends blindly, half again deeper than wide: a narrow hole, a groove, a crack.
     Pit,
     /// It lies between two bodies, which filling it joins.
     Gap,
