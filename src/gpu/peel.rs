@@ -10,7 +10,6 @@ const BATCH: usize = 4;
 /// The most rays along a side of a tile: six textures of a word each.
 const TILE_SIDE: u32 = 2048;
 const SLOTS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-const DEPTHS: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 /// The program.
 #[derive(Debug)]
@@ -21,16 +20,8 @@ pub(super) struct Peel {
 impl Peel {
     pub fn new(device: &wgpu::Device) -> Self {
         let target = wgpu::ColorTargetState { format: SLOTS, blend: None, write_mask: wgpu::ColorWrites::ALL };
-        let depth = wgpu::DepthStencilState {
-            format: DEPTHS,
-            depth_write_enabled: Some(true),
-            // Of equal depths the first one drawn stays.
-            depth_compare: Some(wgpu::CompareFunction::Less),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        };
         let constants = shaders::PEEL_CONSTANTS;
-        Self { pipeline: shaders::render(device, shaders::PEEL, "peel", constants, target, Some(depth)) }
+        Self { pipeline: shaders::render(device, shaders::PEEL, "peel", constants, target, Some(shaders::nearest())) }
     }
 
     /// The crossings of all rays of a window.
@@ -127,7 +118,7 @@ impl Textures {
     fn new(run: &Run<'_>, size: [u32; 2]) -> Self {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
         let slot = |_| run.texture(size, SLOTS, usage | wgpu::TextureUsages::COPY_SRC);
-        let depth = |_| run.texture(size, DEPTHS, usage);
+        let depth = |_| run.texture(size, shaders::DEPTHS, usage);
         Self { slots: (0..BATCH).map(slot).collect(), depths: (0..2).map(depth).collect() }
     }
 

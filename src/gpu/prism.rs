@@ -14,7 +14,6 @@ use crate::sdf::prism::{Facet, Frustum, MOST_CORNERS, Prisms, Table};
 /// Where nothing is drawn: beyond any band.
 const NOTHING: f64 = 1e30;
 const DISTANCES: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
-const DEPTHS: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Vertices of one section: a fan.
 const VERTICES: u32 = 3 * (MOST_CORNERS as u32 - 2);
 /// Words of a frustum; its sections and the places in a slab's list take less.
@@ -119,20 +118,12 @@ struct Slices {
 impl Slices {
     fn new(run: &Run<'_>, size: [u32; 2], band: f32) -> Self {
         let target = wgpu::ColorTargetState { format: DISTANCES, blend: None, write_mask: wgpu::ColorWrites::ALL };
-        let depth = wgpu::DepthStencilState {
-            format: DEPTHS,
-            depth_write_enabled: Some(true),
-            // Of equal distances the first one drawn stays.
-            depth_compare: Some(wgpu::CompareFunction::Less),
-            stencil: wgpu::StencilState::default(),
-            bias: wgpu::DepthBiasState::default(),
-        };
         let constants = [("band", f64::from(band))];
         let raw = &run.device.raw;
-        let pipeline = shaders::render(raw, shaders::PRISM, "fragment", &constants, target, Some(depth));
+        let pipeline = shaders::render(raw, shaders::PRISM, "fragment", &constants, target, Some(shaders::nearest()));
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let distances = (0..BRICK).map(|_| run.texture(size, DISTANCES, usage)).collect();
-        let depth = run.texture(size, DEPTHS, wgpu::TextureUsages::RENDER_ATTACHMENT);
+        let depth = run.texture(size, shaders::DEPTHS, wgpu::TextureUsages::RENDER_ATTACHMENT);
         Self { pipeline, distances, depth: depth.create_view(&wgpu::TextureViewDescriptor::default()), size }
     }
 

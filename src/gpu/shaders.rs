@@ -56,6 +56,20 @@ pub(super) fn compute(
     })
 }
 
+/// The format of depths.
+pub(super) const DEPTHS: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+/// A depth test that keeps the nearest fragment, of equal ones the first one drawn.
+pub(super) fn nearest() -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format: DEPTHS,
+        depth_write_enabled: Some(true),
+        depth_compare: Some(wgpu::CompareFunction::Less),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState::default(),
+    }
+}
+
 /// A pipeline that draws triangles from buffers into one target with the fragments of `entry_point`.
 pub(super) fn render(
     device: &wgpu::Device,

@@ -10,6 +10,7 @@ use crate::lattice::{BRICK, Grid, Lattice};
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
+use crate::vote::voxel_in_brick;
 
 /// What a closing may fill, h, and be left out: the first step's surface is a mesh, and where it is round, its chords
 /// bring the second step off by h² / 8 r, 0.06 h at r = 2 h.
@@ -96,10 +97,7 @@ pub fn closed(
 
 /// The values of `value` at the voxels of the bricks of `grid`, and its classes elsewhere.
 fn over(grid: &Grid<f32>, value: impl Fn(IVec3) -> f32 + Sync) -> Grid<f32> {
-    let of_brick = |&brick: &IVec3| {
-        let voxel = |n: usize| BRICK * brick + IVec3::new(n as i32 & 7, n as i32 >> 3 & 7, n as i32 >> 6);
-        std::array::from_fn(|n| value(voxel(n)))
-    };
+    let of_brick = |&brick: &IVec3| std::array::from_fn(|n| value(BRICK * brick + voxel_in_brick(n)));
     let values = grid.bricks.active().par_iter().map(of_brick).collect();
     Grid { bricks: grid.bricks.clone(), values, inside: grid.inside, outside: grid.outside }
 }

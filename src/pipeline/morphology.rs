@@ -176,8 +176,6 @@ impl Run<'_> {
         let Made { surface, own, fit } = made;
         let source = |own: &Option<u32>| own.map_or(TriangleSource::Closed, |t| solid.sources[t as usize]);
         let sources: Vec<TriangleSource> = own.iter().map(source).collect();
-        let quick = ValidateOptions { self_intersections: false, weld: false };
-        let volume = |mesh: &TriMesh| validate(mesh, &quick, &Progress::none()).map_or(0.0, |validity| validity.volume);
         let mut report = solid.report.clone();
         report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
         report.morphology = Some(MorphologyReport {
@@ -198,4 +196,10 @@ impl Run<'_> {
             MorphologyError::Distance(error) => Error::VoxelSize { reason: error.to_string() },
         }
     }
+}
+
+/// Cubic model units.
+pub(super) fn volume(mesh: &TriMesh) -> f64 {
+    let quick = ValidateOptions { self_intersections: false, weld: false };
+    validate(mesh, &quick, &Progress::none()).map_or(0.0, |validity| validity.volume)
 }

@@ -11,7 +11,7 @@ use crate::vote::{Lid, Votes, doubts};
 /// Crossings before and after the spans were made.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Count {
-    rays: usize,
+    pub rays: usize,
     hits: usize,
     layers: usize,
 }

@@ -4,11 +4,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::morphology::{Run, usable};
+use super::morphology::{Run, usable, volume};
 use super::plan::{Offsets, area, check_offsets};
 use super::{Error, MorphologyOptions, Options, Outcome, TriangleSource, VoxelSize, boolean, prepare, stages};
 use crate::ldi::Expression;
-use crate::mesh::{Pseudonormals, TriMesh, ValidateOptions, validate};
+use crate::mesh::{Pseudonormals, TriMesh};
 use crate::morphology::{Body, Operation, middles};
 use crate::progress::{Progress, Stopped};
 
@@ -161,9 +161,4 @@ fn moved(mut sheets: TriMesh, side: SheetSide, by: f64) -> TriMesh {
     }
     sheets.positions = to;
     sheets
-}
-
-fn volume(mesh: &TriMesh) -> f64 {
-    let quick = ValidateOptions { self_intersections: false, weld: false };
-    validate(mesh, &quick, &Progress::none()).map_or(0.0, |validity| validity.volume)
 }

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Error, Options, plan, prepare};
+use super::{Error, Options, plan, prepare, solid};
 use crate::ldi::{Expression, Spans, THIN, ldis, spans, widths};
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
@@ -58,7 +58,7 @@ pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Res
     let mut layers = ldis(&soup.mesh, &lattice, 1, progress)?;
     soup.turn_patches(&mut layers, options.orient, progress)?;
     progress.stage("spans")?;
-    let rays: usize = layers.iter().map(|l| l.offsets.windows(2).filter(|w| w[1] > w[0]).count()).sum();
+    let rays = solid::count(&layers).rays;
     let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, &Expression::Operand(0)));
     let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
     let found = widths(&spans, &soup.planes(&lattice));

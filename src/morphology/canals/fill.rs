@@ -11,6 +11,7 @@ use crate::morphology::offset::{MARGIN, shift};
 use crate::morphology::{Body, MorphologyError};
 use crate::progress::Progress;
 use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
+use crate::vote::voxel_in_brick;
 
 /// The number of no voxel.
 const NONE: u32 = u32::MAX;
@@ -51,8 +52,8 @@ impl Fill {
         shift(&mut closing, (radius / lattice.h) as f32);
         let least = (unchanged(radius, lattice.h) / lattice.h) as f32;
         let of_brick = |(values, &brick): (&[f32; BRICK_VOXELS], &IVec3)| {
-            let voxels = (0i32..).zip(values).filter(|(_, own)| **own > 0.0);
-            let voxels = voxels.map(|(n, _)| BRICK * brick + IVec3::new(n & 7, n >> 3 & 7, n >> 6));
+            let voxels = values.iter().enumerate().filter(|(_, own)| **own > 0.0);
+            let voxels = voxels.map(|(n, _)| BRICK * brick + voxel_in_brick(n));
             voxels.filter(|&voxel| closing.get(voxel) <= -least).collect::<Vec<IVec3>>()
         };
         let bricks: Vec<Vec<IVec3>> = own.values.par_iter().zip(own.bricks.active()).map(of_brick).collect();

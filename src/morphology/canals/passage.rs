@@ -171,13 +171,7 @@ fn passage(part: &Part, from: impl Fn(u32) -> bool, to: impl Fn(u32) -> bool) ->
     let reached = |n: &u32| to(*n) && found.cost[*n as usize].is_finite();
     let cost = |n: &u32| found.cost[*n as usize];
     let end = (0..part.voxels.len() as u32).filter(reached).min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
-    let mut way = vec![end];
-    let mut at = end;
-    while found.before[at as usize] != at {
-        at = found.before[at as usize];
-        way.push(at);
-    }
-    Some(way)
+    Some(found.back_from(end))
 }
 
 /// The largest clearance that all members of some way have.
@@ -219,6 +213,14 @@ struct Ways {
     before: Vec<u32>,
 }
 
+impl Ways {
+    /// The members from `end` back to where its way begins.
+    fn back_from(&self, end: u32) -> Vec<u32> {
+        let before = |&at: &u32| Some(self.before[at as usize]).filter(|&before| before != at);
+        std::iter::successors(Some(end), before).collect()
+    }
+}
+
 /// The cheapest ways over members that `allowed` holds of.
 fn shortest(part: &Part, from: impl Fn(u32) -> bool, allowed: impl Fn(u32) -> bool) -> Ways {
     let count = part.voxels.len();
@@ -253,13 +255,8 @@ fn inner(part: &Part) -> Option<Vec<u32>> {
     let count = part.voxels.len() as u32;
     let widest = (0..count).max_by(|&a, &b| part.clearance[a as usize].total_cmp(&part.clearance[b as usize]))?;
     let ways = shortest(part, |n| n == widest, |_| true);
-    let mut at = (0..count).max_by(|&a, &b| ways.far[a as usize].total_cmp(&ways.far[b as usize]))?;
-    let mut way = vec![at];
-    while ways.before[at as usize] != at {
-        at = ways.before[at as usize];
-        way.push(at);
-    }
-    Some(way)
+    let end = (0..count).max_by(|&a, &b| ways.far[a as usize].total_cmp(&ways.far[b as usize]))?;
+    Some(ways.back_from(end))
 }
 
 fn smooth(mut points: Vec<DVec3>) -> Vec<DVec3> {
