@@ -1,7 +1,7 @@
 //! The nearest of many triangles or segments: a tree of boxes in single precision that decides only
 //! what need not be looked at, and distances in double precision.
 
-use glam::{DVec3, Vec3A};
+use glam::{DVec3, Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -35,14 +35,16 @@ pub struct Closest {
 /// the smallest number is it.
 pub struct ClosestTree<S> {
     /// The shapes times `scale`.
-    shapes: Vec<S>,
-    tree: Bvh2,
+    pub(super) shapes: Vec<S>,
+    pub(super) tree: Bvh2,
+    /// The shapes in the space of the boxes, in the order of the tree's leaves, for packets.
+    pub(super) singles: Vec<[Vec3; 3]>,
     /// A power of two that brings coordinates so near to 1 that squares neither overflow nor vanish.
-    scale: f64,
+    pub(super) scale: f64,
     /// Centre of all shapes, times `scale`.
-    centre: DVec3,
+    pub(super) centre: DVec3,
     /// From there to the space of the boxes.
-    shrink: f64,
+    pub(super) shrink: f64,
 }
 
 impl ClosestTree<[DVec3; 3]> {
@@ -73,7 +75,15 @@ impl<S: Shape> ClosestTree<S> {
                 Aabb::new(single(b.min, -margin), single(b.max, margin))
             })
             .collect();
-        Self { tree: tree_over(&boxes), shapes, scale, centre, shrink }
+        let tree = tree_over(&boxes);
+        let singles = tree.primitive_indices.iter().map(|&id| shapes[id as usize].single(centre, shrink)).collect();
+        Self { tree, singles, shapes, scale, centre, shrink }
+    }
+
+    /// The box around all shapes, model units.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let all = self.shapes.iter().map(Shape::bounds).reduce(|a, b| a.union(&b))?;
+        Some(Bounds { min: all.min / self.scale, max: all.max / self.scale })
     }
 
     /// Number of shapes.
@@ -94,7 +104,7 @@ impl<S: Shape> ClosestTree<S> {
     /// The point nearest to `p`, if one is not farther than `limit`; both in model units.
     pub fn nearest_within(&self, p: DVec3, limit: f64) -> Option<Closest> {
         let target = p * self.scale;
-        let mut best = Best { square: (limit * self.scale).powi(2), found: None };
+        let mut best = Best::within((limit * self.scale).powi(2));
         let mut stack: Vec<(f64, u32)> = Vec::with_capacity(64);
         if let Some(square) = self.square_to(0, target) {
             stack.push((square, 0));
@@ -118,12 +128,7 @@ impl<S: Shape> ClosestTree<S> {
                 stack.extend(if left.0 <= right.0 { [right, left] } else { [left, right] });
             }
         }
-        best.found.map(|(id, point, feature)| Closest {
-            id,
-            point: point / self.scale,
-            distance: best.square.sqrt() / self.scale,
-            feature,
-        })
+        best.closest(self.scale)
     }
 
     /// A lower bound of the squared distance from `target` to what a node holds, both times `scale`.
@@ -137,14 +142,26 @@ impl<S: Shape> ClosestTree<S> {
 }
 
 /// The best find of a search.
-struct Best {
-    square: f64,
+pub(super) struct Best {
+    /// Of its distance, times the scale of the tree.
+    pub(super) square: f64,
     found: Option<(u32, DVec3, Feature)>,
 }
 
 impl Best {
+    /// Nothing yet, and nothing farther than the root of `square` will be.
+    pub(super) fn within(square: f64) -> Self {
+        Self { square, found: None }
+    }
+
+    /// What was found, model units.
+    pub(super) fn closest(&self, scale: f64) -> Option<Closest> {
+        let distance = self.square.sqrt() / scale;
+        self.found.map(|(id, point, feature)| Closest { id, point: point / scale, distance, feature })
+    }
+
     #[inline]
-    fn offer(&mut self, id: u32, (point, feature): (DVec3, Feature), target: DVec3) {
+    pub(super) fn offer(&mut self, id: u32, (point, feature): (DVec3, Feature), target: DVec3) {
         let square = point.distance_squared(target);
         let first_of_equal = square == self.square && self.found.is_none_or(|(held, ..)| id < held);
         if square < self.square || first_of_equal {

@@ -12,6 +12,7 @@ pub(crate) mod edges;
 mod half_edges;
 pub(crate) mod least_squares;
 mod nearest_point;
+mod packet;
 mod plane;
 mod predicates;
 mod pseudonormals;

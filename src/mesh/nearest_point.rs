@@ -1,6 +1,6 @@
 //! The nearest point of one triangle or one segment, robust for slivers and degenerate ones.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::Bounds;
 
@@ -23,6 +23,8 @@ pub trait Shape: Copy + Send + Sync {
     fn nearest(&self, p: DVec3) -> (DVec3, Feature);
     /// The same shape with every coordinate multiplied by `factor`.
     fn scaled(&self, factor: f64) -> Self;
+    /// Its corners in single precision, three always, moved by `-centre` and then multiplied by `shrink`.
+    fn single(&self, centre: DVec3, shrink: f64) -> [Vec3; 3];
 }
 
 impl Shape for [DVec3; 2] {
@@ -48,6 +50,10 @@ impl Shape for [DVec3; 2] {
 
     fn scaled(&self, factor: f64) -> Self {
         self.map(|p| p * factor)
+    }
+
+    fn single(&self, centre: DVec3, shrink: f64) -> [Vec3; 3] {
+        [self[0], self[1], self[1]].map(|p| ((p - centre) * shrink).as_vec3())
     }
 }
 
@@ -96,5 +102,9 @@ impl Shape for [DVec3; 3] {
 
     fn scaled(&self, factor: f64) -> Self {
         self.map(|p| p * factor)
+    }
+
+    fn single(&self, centre: DVec3, shrink: f64) -> [Vec3; 3] {
+        self.map(|p| ((p - centre) * shrink).as_vec3())
     }
 }

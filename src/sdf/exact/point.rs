@@ -1,18 +1,23 @@
 //! The exact signed distance at any point: the nearest triangle by the box tree, the side by the
 //! pseudonormal of the face, edge or vertex that is nearest.
 
+use std::cell::RefCell;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::mesh::{ClosestTree, Feature, Pseudonormals, TriMesh};
+use crate::mesh::{Closest, ClosestTree, Feature, Pseudonormals, TriMesh};
 use crate::vote::WindingTree;
 
-/// So many neighbouring points are asked in one go, each starting from what its predecessor found.
+/// So many neighbouring points are asked in one go.
 const PACKET: usize = 256;
-/// Growth of the first guess over the distance to the predecessor's triangle, so that rounding excludes nothing.
-const GUESS: f64 = 1.0 + 1e-9;
 /// Steps towards one crossing: halving alone ends at the spacing of `f64` numbers.
 const MOST_STEPS: u32 = 200;
+
+thread_local! {
+    /// Room for the finds of a packet.
+    static CLOSEST: RefCell<Vec<Closest>> = const { RefCell::new(Vec::new()) };
+}
 
 /// Which side of the surface a point is on.
 pub enum PointSign {
@@ -63,36 +68,44 @@ impl ExactDistance {
 
     /// The same if the surface is not farther from `p` than `limit`; both in model units.
     pub fn within(&self, p: DVec3, limit: f64) -> Option<Nearest> {
-        let closest = self.tree.nearest_within(p, limit)?;
+        self.tree.nearest_within(p, limit).map(|closest| self.nearest(p, &closest))
+    }
+
+    fn nearest(&self, p: DVec3, closest: &Closest) -> Nearest {
         let signed = match &self.sign {
-            PointSign::Pseudonormal => self.normals.signed(p, &closest),
+            PointSign::Pseudonormal => self.normals.signed(p, closest),
             PointSign::Winding(tree) if tree.winding(p) > 0.5 => -closest.distance,
             PointSign::Winding(_) | PointSign::Unsigned => closest.distance,
         };
         let away = (p - closest.point).normalize_or_zero();
         let gradient = match signed {
-            s if away == DVec3::ZERO || s == 0.0 => self.normals.at(&closest),
+            s if away == DVec3::ZERO || s == 0.0 => self.normals.at(closest),
             s if s < 0.0 => -away,
             _ => away,
         };
-        Some(Nearest { signed, point: closest.point, triangle: closest.id, feature: closest.feature, gradient })
+        Nearest { signed, point: closest.point, triangle: closest.id, feature: closest.feature, gradient }
     }
 
     /// [`Self::at`] for many points, in their order, on all threads. Points that follow each other are
-    /// best near each other: each search begins with the find of the one before.
+    /// best near each other.
     pub fn at_all(&self, points: &[DVec3]) -> Vec<Option<Nearest>> {
-        points.par_chunks(PACKET).flat_map_iter(|packet| self.packet(packet)).collect()
+        let packet = |points: &[DVec3]| {
+            let mut found = Vec::with_capacity(points.len());
+            self.packet(points, &mut found);
+            let empty = found.is_empty();
+            found.into_iter().map(Some).chain(points.iter().filter(move |_| empty).map(|_| None)).collect::<Vec<_>>()
+        };
+        points.par_chunks(PACKET).flat_map_iter(packet).collect()
     }
 
-    fn packet(&self, points: &[DVec3]) -> Vec<Option<Nearest>> {
-        let mut before: Option<DVec3> = None;
-        let mut ask = |&p: &DVec3| {
-            let guess = before.map_or(f64::INFINITY, |point| p.distance(point) * GUESS);
-            let found = self.within(p, guess).or_else(|| self.at(p));
-            before = found.map(|found| found.point).or(before);
-            found
-        };
-        points.iter().map(&mut ask).collect()
+    /// [`Self::at`] for points near each other, in their order, on this thread; nothing for a mesh without triangles.
+    /// `found` is emptied first.
+    pub fn packet(&self, points: &[DVec3], found: &mut Vec<Nearest>) {
+        found.clear();
+        CLOSEST.with_borrow_mut(|closest| {
+            self.tree.nearest_all(points, closest);
+            found.extend(points.iter().zip(closest).map(|(&p, closest)| self.nearest(p, closest)));
+        });
     }
 
     /// Where the signed distance passes `level` (model units) on the way from `from` to `to` (model

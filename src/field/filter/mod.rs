@@ -1,0 +1,300 @@
+//! The convolution filter that keeps the surface (Sanchez et al. 2015 §4, §5).
+//!
+//! g(p) = ∫ f(p − s h(p)) w(s) ds with a kernel w whose size h(p) is 0 on the surface and 1 from the distance f_c on: the zero
+//! level stays exactly, and elsewhere creases of the distance go. With the bump kernel and b ≤ 8 f_c / 9 no sample lies beyond
+//! the surface (7), so that no other zero level can arise.
+
+mod kernel;
+mod local;
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+pub(in crate::field) use kernel::uniform;
+use kernel::{Displacement, displacements, near_each_other};
+pub use kernel::{Kernel, Sampling};
+pub use local::{SmoothOptions, smooth};
+
+use super::{Ball, Extent, Facet, Field, Range, Sample, Shared};
+
+/// The bump's width over the cap must not be more (7).
+pub const WIDEST: f64 = 8.0 / 9.0;
+
+/// What counts as no displacement at all, over the cap.
+const NOTHING: f64 = 1e-12;
+
+/// Options of [`filtered`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilterOptions {
+    /// The paper's f_c, model units, more than 0: from this distance on the kernel has its full size.
+    pub cap: f64,
+    /// The kernel.
+    pub kernel: Kernel,
+    /// Where the field is sampled.
+    pub sampling: Sampling,
+    /// Whether fewer samples are taken where they are enough, for drawn ones.
+    pub adaptive: Option<Adaptive>,
+    /// Whether the unsigned distance is filtered and the sign put back (§4.3): it allows any kernel without other zero
+    /// levels, but makes creases of its own where the kernel reaches beyond the surface.
+    pub sign_safe: bool,
+}
+
+impl FilterOptions {
+    /// The widest bump that keeps the zero level for this cap (model units), 64 samples, as many everywhere.
+    pub fn new(cap: f64) -> Self {
+        let sampling = Sampling::Drawn { count: 64, seed: 0, mirrored: true };
+        Self { cap, kernel: Kernel::Bump { width: WIDEST * cap }, sampling, adaptive: None, sign_safe: false }
+    }
+}
+
+/// How the number of samples follows the need (§5.2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Adaptive {
+    /// Samples where neither the surface nor the medial axis is near, at least 2; at most all there are.
+    pub least: usize,
+}
+
+/// Why a field cannot be filtered.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum FilterError {
+    /// A length is not positive.
+    #[error("a filter with a cap of {cap} and a kernel {width} wide is none: both must be positive lengths")]
+    Size {
+        /// The cap, model units.
+        cap: f64,
+        /// The width, model units.
+        width: f64,
+    },
+    /// The kernel could reach beyond the surface.
+    #[error("a kernel {width} wide reaches beyond the surface under a cap of {cap}, and could make surfaces of its own: \
+        a width of at most {most}, or a cap of at least {least}", most = WIDEST * cap, least = width / WIDEST)]
+    Wide {
+        /// The width, model units.
+        width: f64,
+        /// The cap, model units.
+        cap: f64,
+    },
+    /// The Gaussian has no end.
+    #[error(
+        "a Gaussian kernel has no end and could make surfaces of its own: the bump kernel, or the sign-safe filter"
+    )]
+    Endless,
+}
+
+/// `field` filtered: the same zero level, smooth elsewhere.
+///
+/// # Errors
+/// See [`FilterError`].
+pub fn filtered(field: Shared, options: &FilterOptions) -> Result<Shared, FilterError> {
+    let (cap, width) = (options.cap, options.kernel.width());
+    if !(cap > 0.0 && width > 0.0 && cap.is_finite() && width.is_finite()) {
+        return Err(FilterError::Size { cap, width });
+    }
+    match options.kernel {
+        _ if options.sign_safe => {}
+        Kernel::Gaussian { .. } => return Err(FilterError::Endless),
+        Kernel::Bump { width } if width > WIDEST * cap * (1.0 + 1e-12) => return Err(FilterError::Wide { width, cap }),
+        Kernel::Bump { .. } => {}
+    }
+    Ok(Arc::new(Filtered { inner: field, around: Around::new(options), cap, sign_safe: options.sign_safe }))
+}
+
+/// The samples around a point.
+struct Around {
+    /// Those that are always taken, in packets; their weights add up to 1.
+    first: Vec<Displacement>,
+    /// Those that are taken where they are needed, in the order drawn.
+    more: Vec<Displacement>,
+    /// How many of them are added at a time: opposites together.
+    step: usize,
+    /// The width of the kernel, model units.
+    width: f64,
+    /// The farthest displacement, and the greatest mean of the first ones and any of the others, model units.
+    farthest: f64,
+    mean: f64,
+}
+
+impl Around {
+    fn new(options: &FilterOptions) -> Self {
+        let mut first = displacements(&options.kernel, options.sampling);
+        let step = if matches!(options.sampling, Sampling::Drawn { mirrored: true, .. }) { 2 } else { 1 };
+        let drawn = matches!(options.sampling, Sampling::Drawn { .. });
+        let least = options.adaptive.filter(|_| drawn).map(|adaptive| adaptive.least.max(2).next_multiple_of(step));
+        let least = least.unwrap_or(first.len());
+        let mut more = first.split_off(least.min(first.len()));
+        let sum: f64 = first.iter().map(|d| d.weight).sum();
+        first.iter_mut().for_each(|d| d.weight /= sum);
+        more.iter_mut().for_each(|d| d.weight = 1.0);
+        near_each_other(&mut first);
+        let farthest = first.iter().chain(&more).map(|d| d.by.length()).fold(0.0, f64::max);
+        let mut sum: f64 = first.iter().map(|d| d.by.length() * d.weight).sum();
+        let (mut mean, mut count) = (sum, first.len() as f64);
+        sum *= count;
+        for d in &more {
+            (sum, count) = (sum + d.by.length(), count + 1.0);
+            mean = mean.max(sum / count);
+        }
+        Self { width: options.kernel.width(), step, farthest, mean, first, more }
+    }
+}
+
+struct Filtered {
+    inner: Shared,
+    around: Around,
+    cap: f64,
+    sign_safe: bool,
+}
+
+/// 3 t² − 2 t³ between 0 and 1 (4), and how it grows.
+fn smoothstep(t: f64) -> (f64, f64) {
+    let t = t.clamp(0.0, 1.0);
+    (t * t * (3.0 - 2.0 * t), 6.0 * t * (1.0 - t))
+}
+
+impl Filtered {
+    /// The kernel's size at a value of the field, and how it grows with the value, per model unit.
+    fn size(&self, value: f64) -> (f64, f64) {
+        let (size, growth) = smoothstep(value.abs() / self.cap);
+        (size, growth * value.signum() / self.cap)
+    }
+
+    /// A sampled value as it counts for a point on the side of `sign`.
+    fn counted(&self, value: f64, sign: f64) -> f64 {
+        if self.sign_safe { value.abs() * sign } else { value }
+    }
+
+    /// How many of the further samples are needed where the first ones have this mean (§5.2): all near the surface and
+    /// near the medial axis, where the mean is not the value.
+    fn wanted(&self, value: f64, size: f64, mean: f64) -> f64 {
+        let medial = smoothstep((mean - value).abs() / (MEDIAL * size * self.around.width)).0;
+        let near = 1.0 - smoothstep(value.abs() / self.cap).0;
+        (medial + near) / 2.0 * self.around.more.len() as f64
+    }
+
+    /// The mean of the sampled values, or as much of it as the displacements' weights are.
+    fn mean(&self, p: DVec3, value: f64, size: f64, displacements: &[Displacement], room: &mut Room) -> f64 {
+        room.points.clear();
+        room.points.extend(displacements.iter().map(|d| p - d.by * size));
+        room.values.resize(displacements.len(), 0.0);
+        self.inner.values(&room.points, &mut room.values);
+        let counted = room.values.iter().map(|&v| self.counted(v, value.signum()));
+        displacements.iter().zip(counted).map(|(d, value)| d.weight * value).sum()
+    }
+
+    /// The further samples that are needed where the first ones have this mean, and the sum of all weights if each of the
+    /// first counts 1. The last one, or the last pair of opposites, counts by the fraction, so that nothing jumps where
+    /// their number changes.
+    fn further(&self, value: f64, size: f64, mean: f64) -> (Vec<Displacement>, f64) {
+        let wanted = self.wanted(value, size, mean);
+        let step = self.around.step;
+        let weight = |k: usize| ((wanted - (k / step * step) as f64) / step as f64).clamp(0.0, 1.0);
+        let weighted = self.around.more.iter().zip(0..).map(|(d, k)| Displacement { weight: weight(k), ..*d });
+        let further: Vec<Displacement> = weighted.take_while(|d| d.weight > 0.0).collect();
+        let sum = further.iter().map(|d| d.weight).sum::<f64>();
+        (further, self.around.first.len() as f64 + sum)
+    }
+
+    /// Whether the kernel has any size where the field has this value.
+    fn spreads(&self, value: f64) -> bool {
+        value.is_finite() && self.size(value).0 * self.around.farthest > NOTHING * self.cap
+    }
+
+    fn filter(&self, p: DVec3, value: f64, room: &mut Room) -> f64 {
+        if !self.spreads(value) {
+            return value;
+        }
+        let size = self.size(value).0;
+        let first = self.mean(p, value, size, &self.around.first, room);
+        if self.around.more.is_empty() {
+            return first;
+        }
+        let (further, all) = self.further(value, size, first);
+        (first * self.around.first.len() as f64 + self.mean(p, value, size, &further, room)) / all
+    }
+
+    /// ∇g = Σ w (∇f − (∇f · s) ∇h) at the displaced points; how the number of samples grows is left out.
+    fn filter_sample(&self, p: DVec3, own: Sample, room: &mut Room) -> Sample {
+        if !self.spreads(own.value) {
+            return own;
+        }
+        let (size, growth) = self.size(own.value);
+        let mut all = self.around.first.clone();
+        if !self.around.more.is_empty() {
+            let first = self.mean(p, own.value, size, &all, room);
+            let (further, count) = self.further(own.value, size, first);
+            let part = self.around.first.len() as f64 / count;
+            all.iter_mut().for_each(|d| d.weight *= part);
+            all.extend(further.into_iter().map(|d| Displacement { weight: d.weight / count, ..d }));
+        }
+        room.points.clear();
+        room.points.extend(all.iter().map(|d| p - d.by * size));
+        room.samples.resize(all.len(), Sample::default());
+        self.inner.samples(&room.points, &mut room.samples);
+        let mut sum = Sample::default();
+        for (d, sample) in all.iter().zip(&room.samples) {
+            let value = self.counted(sample.value, own.value.signum());
+            let gradient = if value == sample.value { sample.gradient } else { -sample.gradient };
+            sum.value += value * d.weight;
+            sum.gradient += (gradient - own.gradient * (growth * gradient.dot(d.by))) * d.weight;
+        }
+        sum
+    }
+}
+
+/// The mean of the first samples is off by this part of the kernel's size on the medial axis of a plate: measured for the
+/// bump, 0.23 at its widest.
+const MEDIAL: f64 = 0.2;
+
+/// What the samples of one point are kept in.
+#[derive(Default)]
+struct Room {
+    points: Vec<DVec3>,
+    values: Vec<f64>,
+    samples: Vec<Sample>,
+}
+
+impl Field for Filtered {
+    fn values(&self, points: &[DVec3], values: &mut [f64]) {
+        self.inner.values(points, values);
+        let mut room = Room::default();
+        points.iter().zip(values).for_each(|(&p, value)| *value = self.filter(p, *value, &mut room));
+    }
+
+    fn samples(&self, points: &[DVec3], samples: &mut [Sample]) {
+        self.inner.samples(points, samples);
+        let mut room = Room::default();
+        points.iter().zip(samples).for_each(|(&p, sample)| *sample = self.filter_sample(p, *sample, &mut room));
+    }
+
+    fn range(&self, ball: &Ball) -> Range {
+        let own = self.inner.range(ball);
+        let most = own.abs().max;
+        let size = if most.is_finite() { self.size(most).0 } else { 1.0 };
+        let reached = self.inner.range(&Ball { radius: ball.radius + size * self.around.farthest, ..*ball });
+        // On one side of the surface no sample is on the other.
+        let side = if own.min > 0.0 {
+            Range { min: 0.0, max: f64::INFINITY }
+        } else if own.max < 0.0 {
+            Range { min: f64::NEG_INFINITY, max: 0.0 }
+        } else {
+            Range::ALL
+        };
+        // The mean of the values is as far from the value as the mean displacement at most.
+        let off = self.inner.steepness() * size * self.around.mean;
+        reached.and(side).and(own.plus(Range::around(0.0, off)))
+    }
+
+    fn steepness(&self) -> f64 {
+        let steep = self.inner.steepness();
+        steep * (1.0 + self.around.mean * steep * 1.5 / self.cap)
+    }
+
+    fn extent(&self) -> Extent {
+        self.inner.extent()
+    }
+
+    fn facet(&self, p: DVec3, within: f64) -> Option<Facet> {
+        self.inner.facet(p, within)
+    }
+}

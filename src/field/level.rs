@@ -1,0 +1,123 @@
+//! The zero level of a field as a contour with its tangent planes.
+
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
+
+use super::fill::touches_border;
+use super::{Facet, Field, FillError, FillOptions, Sample, fill};
+use crate::contour::{Contour, ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
+use crate::lattice::Lattice;
+use crate::mesh::Plane;
+use crate::progress::{Progress, Stopped};
+
+/// Values are found this far from the zero level, h: beyond the corners of its cells.
+const BAND: f64 = 1.8;
+/// A point whose value is nearer to zero than this, h, is on the level.
+const AT_LEVEL: f64 = 1e-7;
+/// Steps towards one point of the level.
+const MOST_STEPS: usize = 60;
+/// Tangent planes found in one packet.
+const PACKET: usize = 64;
+/// A gradient shorter than this is none.
+const FLAT: f64 = 1e-6;
+/// A vertex lies on a triangle of a source if it is not farther from it than this, h.
+const ON_SOURCE: f64 = 1e-6;
+
+/// The zero level of a field.
+pub struct Level {
+    /// The surface; each vertex's `triangle` is its own number.
+    pub contour: Contour,
+    /// For each vertex of the contour the tangent plane, model units, normal outwards.
+    pub planes: Vec<Plane>,
+    /// For each vertex of the contour the triangle that the level lies on there.
+    pub facets: Vec<Option<Facet>>,
+    /// Whether the level goes on beyond the lattice, where it was cut off.
+    pub cut_off: bool,
+}
+
+/// Why there is no level.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LevelError {
+    /// The field cannot be filled.
+    #[error(transparent)]
+    Fill(#[from] FillError),
+    /// Interrupted, or the deadline passed.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+/// The surface where `field` is zero, on `lattice`. Vertices lie on it to 1e-7 h along their lattice edges. It is empty where
+/// no voxel is negative.
+///
+/// # Errors
+/// See [`LevelError`].
+pub fn level(
+    field: &dyn Field,
+    lattice: &Lattice,
+    max_memory: Option<u64>,
+    progress: &Progress,
+) -> Result<Level, LevelError> {
+    let options = FillOptions { band: Some(BAND * lattice.h), max_memory };
+    let mut grid = fill(field, lattice, &options, progress)?;
+    let cut_off = touches_border(&grid, lattice.dims);
+    let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
+    let crossing = |edge: Edge| {
+        let ends = [edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]];
+        // Where values were rounded to single precision, the field itself says it again.
+        let values = ends.map(|voxel| field.value(model(voxel)));
+        let t = passage(field, ends.map(model), values, AT_LEVEL * lattice.h)?;
+        Some(Crossing { t, triangle: NO_TRIANGLE })
+    };
+    // The contour takes distances in h.
+    grid.values.par_iter_mut().flatten().for_each(|value| *value /= lattice.h as f32);
+    let mut contour = contour(lattice, &grid, &crossing, &ContourOptions::default(), progress)?;
+    drop(grid);
+    let positions = &contour.mesh.positions;
+    let planes: Vec<Plane> = positions.par_chunks(PACKET).flat_map_iter(|points| tangents(field, points)).collect();
+    progress.check()?;
+    let facets = positions.par_iter().map(|&p| field.facet(p, ON_SOURCE * lattice.h)).collect();
+    progress.check()?;
+    contour.vertices.iter_mut().zip(0..).for_each(|(vertex, n)| vertex.triangle = n);
+    Ok(Level { contour, planes, facets, cut_off })
+}
+
+/// Where the field is zero between `ends` (model units), where it is `values`: 0 at the first, 1 at the second; `None`
+/// where these lie on one side. Regula falsi with the Illinois rule: the end that stays counts half.
+fn passage(field: &dyn Field, ends: [DVec3; 2], values: [f64; 2], near: f64) -> Option<f64> {
+    let (mut low, mut high) = ((0.0, values[0]), (1.0, values[1]));
+    if (low.1 < 0.0) == (high.1 < 0.0) {
+        return None;
+    }
+    for _ in 0..MOST_STEPS {
+        let t = low.0 + (high.0 - low.0) * (low.1 / (low.1 - high.1));
+        if !(t > low.0 && t < high.0) || high.0 - low.0 < 1e-12 {
+            return Some(t.clamp(low.0, high.0));
+        }
+        let at = field.value(ends[0].lerp(ends[1], t));
+        if at.abs() <= near {
+            return Some(t);
+        }
+        if (at < 0.0) == (low.1 < 0.0) {
+            (low, high.1) = ((t, at), high.1 / 2.0);
+        } else {
+            (high, low.1) = ((t, at), low.1 / 2.0);
+        }
+    }
+    Some((low.0 + high.0) / 2.0)
+}
+
+/// The planes through the points of the level nearest to `points`, by one step along the gradient; without a normal where
+/// there is no gradient.
+fn tangents(field: &dyn Field, points: &[DVec3]) -> Vec<Plane> {
+    let mut samples = vec![Sample::default(); points.len()];
+    field.samples(points, &mut samples);
+    let plane = |(&p, sample): (&DVec3, Sample)| {
+        let steep = sample.gradient.length();
+        if !(steep > FLAT && steep.is_finite()) {
+            return Plane { normal: DVec3::ZERO, offset: 0.0 };
+        }
+        let normal = sample.gradient / steep;
+        Plane { normal, offset: normal.dot(p) - sample.value / steep }
+    };
+    points.iter().zip(samples).map(plane).collect()
+}

@@ -1,0 +1,64 @@
+//! The distance to a mesh as a field.
+
+use std::cell::RefCell;
+
+use glam::DVec3;
+
+use super::{Ball, Extent, Facet, Field, Range, Sample};
+use crate::mesh::{Bounds, TriMesh};
+use crate::sdf::exact::{ExactDistance, Nearest, PointSign};
+
+thread_local! {
+    /// Room for the nearest points of a packet.
+    static NEAREST: RefCell<Vec<Nearest>> = const { RefCell::new(Vec::new()) };
+}
+
+/// The exact signed distance to a mesh.
+pub struct MeshField {
+    distance: ExactDistance,
+    bounds: Option<Bounds>,
+    source: u32,
+}
+
+impl MeshField {
+    /// The distance to `mesh`, which is number `source` of the meshes that a field is made of.
+    pub fn new(mesh: &TriMesh, sign: PointSign, source: u32) -> Self {
+        Self { distance: ExactDistance::of(mesh, sign), bounds: mesh.bounds(), source }
+    }
+
+    fn each(&self, points: &[DVec3], mut take: impl FnMut(usize, Option<&Nearest>)) {
+        NEAREST.with_borrow_mut(|nearest| {
+            self.distance.packet(points, nearest);
+            (0..points.len()).for_each(|k| take(k, nearest.get(k)));
+        });
+    }
+}
+
+impl Field for MeshField {
+    fn values(&self, points: &[DVec3], values: &mut [f64]) {
+        self.each(points, |k, nearest| values[k] = nearest.map_or(f64::INFINITY, |nearest| nearest.signed));
+    }
+
+    fn samples(&self, points: &[DVec3], samples: &mut [Sample]) {
+        let nothing = Sample { value: f64::INFINITY, gradient: DVec3::ZERO };
+        let of = |nearest: &Nearest| Sample { value: nearest.signed, gradient: nearest.gradient };
+        self.each(points, |k, nearest| samples[k] = nearest.map_or(nothing, of));
+    }
+
+    fn range(&self, ball: &Ball) -> Range {
+        Range::around(self.value(ball.centre), ball.radius)
+    }
+
+    fn steepness(&self) -> f64 {
+        1.0
+    }
+
+    fn extent(&self) -> Extent {
+        Extent::of(self.bounds)
+    }
+
+    fn facet(&self, p: DVec3, within: f64) -> Option<Facet> {
+        let nearest = self.distance.within(p, within)?;
+        Some(Facet { source: self.source, triangle: nearest.triangle })
+    }
+}

@@ -1,0 +1,238 @@
+//! A field known at the voxels of a lattice, and what is made of it there: blurring, coarser sampling.
+
+use std::sync::Arc;
+
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
+
+use super::{Ball, Extent, Field, Range, Sample};
+use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot, brick_of};
+use crate::mesh::Bounds;
+use crate::progress::{Progress, Stopped};
+
+/// Bricks that a ball may meet, along an axis, for its range to be looked up in each; larger ones are bounded by the steepness.
+const MOST_BRICKS: i32 = 6;
+
+/// A field by its values at the voxels of a lattice, interpolated linearly along each axis. Beyond the lattice it is what it
+/// is at the nearest point of it, and grows with the distance from there.
+pub struct Sampled {
+    grid: Grid<f32>,
+    lattice: Lattice,
+    /// For each stored brick the range of its values and those next to it.
+    ranges: Vec<Range>,
+    all: Range,
+    steepness: f64,
+    extent: Extent,
+}
+
+impl Sampled {
+    /// The field with these values, model units, at the voxels of `lattice`.
+    pub fn new(grid: Grid<f32>, lattice: Lattice) -> Self {
+        let mut sampled =
+            Self { ranges: Vec::new(), all: Range::ALL, steepness: 0.0, extent: Extent::Empty, grid, lattice };
+        let parts: Vec<(Range, f32, Option<Bounds>)> =
+            sampled.grid.bricks.active().par_iter().map(|&brick| sampled.describe(brick)).collect();
+        let far = |values: &[f32]| Range::of(values.iter().filter(|v| v.is_finite()).map(|&v| f64::from(v)));
+        sampled.all = parts.iter().fold(far(&[sampled.grid.inside, sampled.grid.outside]), |all, part| all.or(part.0));
+        // Along each axis the interpolated field is as steep as the steepest pair of voxels.
+        let steepest = parts.iter().fold(0.0, |most, part| f32::max(most, part.1));
+        sampled.steepness = (f64::from(steepest) / sampled.lattice.h * 3f64.sqrt()).max(1.0);
+        let boxes = parts.iter().filter_map(|part| part.2).reduce(|a, b| a.union(&b));
+        sampled.extent = Extent::of(boxes);
+        sampled.ranges = parts.into_iter().map(|part| part.0).collect();
+        sampled
+    }
+
+    /// The lattice.
+    pub fn lattice(&self) -> &Lattice {
+        &self.lattice
+    }
+
+    /// The values.
+    pub fn grid(&self) -> &Grid<f32> {
+        &self.grid
+    }
+
+    /// The range of a brick with the voxels beyond its upper sides, its steepest step, and where it is not positive.
+    fn describe(&self, brick: IVec3) -> (Range, f32, Option<Bounds>) {
+        let (mut range, mut steepest) = (Range::of([]), 0.0f32);
+        let (mut low, mut high) = (IVec3::MAX, IVec3::MIN);
+        let last = self.lattice.dims - 1;
+        for n in 0..(BRICK + 1).pow(3) {
+            let at = IVec3::new(n % (BRICK + 1), n / (BRICK + 1) % (BRICK + 1), n / (BRICK + 1).pow(2));
+            let voxel = BRICK * brick + at;
+            if voxel.cmpgt(last).any() {
+                continue;
+            }
+            let value = self.grid.get(voxel);
+            range = range.or(Range::of([f64::from(value)]));
+            if value <= 0.0 {
+                (low, high) = (low.min(voxel), high.max(voxel));
+            }
+            for axis in 0..3 {
+                let next = voxel + IVec3::AXES[axis];
+                if at[axis] < BRICK && next[axis] <= last[axis] {
+                    steepest = steepest.max((self.grid.get(next) - value).abs());
+                }
+            }
+        }
+        let model = |voxel: IVec3| self.lattice.to_model(voxel.as_dvec3());
+        (range, steepest, low.cmple(high).all().then(|| Bounds { min: model(low - 1), max: model(high + 1) }))
+    }
+
+    fn at(&self, p: DVec3) -> Sample {
+        let h = self.lattice.h;
+        let own = self.lattice.to_lattice(p);
+        let held = own.clamp(DVec3::ZERO, (self.lattice.dims - 1).as_dvec3());
+        let first = held.floor().as_ivec3().min(self.lattice.dims - 2).max(IVec3::ZERO);
+        let part = held - first.as_dvec3();
+        let corner = |k: i32| f64::from(self.grid.get(first + IVec3::new(k & 1, k >> 1 & 1, k >> 2)));
+        let c: [f64; 8] = std::array::from_fn(|k| corner(k as i32));
+        let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
+        let x = [0, 2, 4, 6].map(|k| mix(c[k], c[k + 1], part.x));
+        let y = [mix(x[0], x[1], part.y), mix(x[2], x[3], part.y)];
+        let along_x = [0, 2, 4, 6].map(|k| c[k + 1] - c[k]);
+        let gx = mix(mix(along_x[0], along_x[1], part.y), mix(along_x[2], along_x[3], part.y), part.z);
+        let gradient = DVec3::new(gx, mix(x[1] - x[0], x[3] - x[2], part.z), y[1] - y[0]) / h;
+        let beyond = own - held;
+        let inside = Sample { value: mix(y[0], y[1], part.z), gradient };
+        if beyond == DVec3::ZERO {
+            return inside;
+        }
+        let within = DVec3::select(beyond.cmpeq(DVec3::ZERO), gradient, DVec3::ZERO);
+        Sample { value: inside.value + beyond.length() * h, gradient: within + beyond.normalize() }
+    }
+}
+
+impl Field for Sampled {
+    fn values(&self, points: &[DVec3], values: &mut [f64]) {
+        values.iter_mut().zip(points).for_each(|(value, &p)| *value = self.at(p).value);
+    }
+
+    fn samples(&self, points: &[DVec3], samples: &mut [Sample]) {
+        samples.iter_mut().zip(points).for_each(|(sample, &p)| *sample = self.at(p));
+    }
+
+    fn range(&self, ball: &Ball) -> Range {
+        let by_steepness = Range::around(self.at(ball.centre).value, self.steepness * ball.radius);
+        let reach = DVec3::splat(ball.radius);
+        let [low, high] = [ball.centre - reach, ball.centre + reach].map(|p| self.lattice.to_lattice(p));
+        let last = (self.lattice.dims - 1).as_dvec3();
+        let whole = low.cmpge(DVec3::ZERO).all() && high.cmple(last).all();
+        let (low, high) = (brick_of(low.floor().as_ivec3()), brick_of(high.floor().as_ivec3()));
+        if !whole || (high - low).max_element() >= MOST_BRICKS {
+            return by_steepness.and(if whole { self.all } else { Range { max: f64::INFINITY, ..self.all } });
+        }
+        let mut range = Range::of([]);
+        for z in low.z..=high.z {
+            for y in low.y..=high.y {
+                for x in low.x..=high.x {
+                    range = range.or(self.of_brick(IVec3::new(x, y, z)));
+                }
+            }
+        }
+        by_steepness.and(range)
+    }
+
+    fn steepness(&self) -> f64 {
+        self.steepness
+    }
+
+    fn extent(&self) -> Extent {
+        self.extent
+    }
+}
+
+impl Sampled {
+    /// The range of the values between the voxels of a brick and the next ones.
+    fn of_brick(&self, brick: IVec3) -> Range {
+        match self.grid.bricks.slot(brick) {
+            Slot::Active(n) => self.ranges[n as usize],
+            // Its upper neighbours may be stored; neighbouring values are on the same side.
+            Slot::Inside => Range { min: self.all.min, max: 0.0 },
+            Slot::Outside => Range { min: 0.0, max: self.all.max },
+        }
+    }
+}
+
+/// Reach of the Gaussian, in standard deviations: what lies beyond has a part of 5e-4 of it.
+const REACH: f64 = 3.5;
+
+/// How far from the surface a field must be known, model units, for [`blurred`] to be right at its zero level.
+pub fn blur_band(sigma: f64) -> f64 {
+    2.0 * REACH * sigma
+}
+
+/// The values of `grid` over `lattice` under a Gaussian of standard deviation `sigma`, model units (Payne and Toga 1992,
+/// "Surface blurring and compression"), one axis after the other, in the stored bricks. With values up to
+/// [`blur_band`] from the surface the zero level is that of the whole field blurred.
+pub fn blurred(grid: &Grid<f32>, lattice: &Lattice, sigma: f64, progress: &Progress) -> Result<Grid<f32>, Stopped> {
+    let weights = gaussian(sigma / lattice.h);
+    let mut blurred = grid.clone();
+    for axis in 0..3 {
+        let from = blurred;
+        let values = from.bricks.active().par_iter().map(|&brick| {
+            progress.check()?;
+            Ok(along(&from, brick, axis, &weights))
+        });
+        let values = values.collect::<Result<Vec<_>, Stopped>>()?;
+        blurred = Grid { bricks: from.bricks, values, inside: from.inside, outside: from.outside };
+    }
+    Ok(blurred)
+}
+
+/// The weights of the voxels from −n to n, which add up to 1.
+fn gaussian(sigma: f64) -> Vec<f32> {
+    let reach = (REACH * sigma).ceil() as i32;
+    let weight = |k: i32| (-0.5 * (f64::from(k) / sigma).powi(2)).exp();
+    let sum: f64 = (-reach..=reach).map(weight).sum();
+    (-reach..=reach).map(|k| (weight(k) / sum) as f32).collect()
+}
+
+/// One brick, blurred along one axis.
+fn along(grid: &Grid<f32>, brick: IVec3, axis: usize, weights: &[f32]) -> [f32; BRICK_VOXELS] {
+    let reach = (weights.len() / 2) as i32;
+    let step = [1, BRICK as usize, (BRICK * BRICK) as usize];
+    let [u, v] = [step[(axis + 1) % 3], step[(axis + 2) % 3]];
+    let mut values = [0.0; BRICK_VOXELS];
+    // The bricks that the kernel reaches, once for all rows.
+    let around = (reach + BRICK - 1) / BRICK;
+    let slots: Vec<Slot> = (-around..=around).map(|k| grid.bricks.slot(brick + IVec3::AXES[axis] * k)).collect();
+    let mut row = vec![0.0f32; ((2 * around + 1) * BRICK) as usize];
+    for n in 0..BRICK as usize * BRICK as usize {
+        let start = n % BRICK as usize * u + n / BRICK as usize * v;
+        for (slot, part) in slots.iter().zip(row.chunks_exact_mut(BRICK as usize)) {
+            match slot {
+                Slot::Active(brick) => {
+                    let of = &grid.values[*brick as usize];
+                    part.iter_mut().enumerate().for_each(|(k, value)| *value = of[start + k * step[axis]]);
+                }
+                Slot::Inside => part.fill(grid.inside),
+                Slot::Outside => part.fill(grid.outside),
+            }
+        }
+        for k in 0..BRICK as usize {
+            let first = (around * BRICK - reach) as usize + k;
+            let sum = row[first..].iter().zip(weights).map(|(value, weight)| value * weight).sum();
+            values[start + k * step[axis]] = sum;
+        }
+    }
+    values
+}
+
+/// A grid from the values of all voxels of a lattice, x fastest, then y.
+pub fn dense(values: &[f32], dims: IVec3) -> Grid<f32> {
+    let ends = (dims + BRICK - 1) / BRICK;
+    let brick = |n: i32| IVec3::new(n % ends.x, n / ends.x % ends.y, n / ends.x / ends.y);
+    let bricks = Bricks::new((0..ends.element_product()).map(brick));
+    let of = |&brick: &IVec3| {
+        std::array::from_fn(|n| {
+            let n = n as i32;
+            // Voxels of the last bricks beyond the lattice repeat its border.
+            let voxel = (BRICK * brick + IVec3::new(n & 7, n >> 3 & 7, n >> 6)).min(dims - 1);
+            values.get((voxel.x + dims.x * (voxel.y + dims.y * voxel.z)) as usize).copied().unwrap_or(f32::INFINITY)
+        })
+    };
+    let values = bricks.active().par_iter().map(of).collect();
+    Grid { bricks: Arc::new(bricks), values, inside: f32::NEG_INFINITY, outside: f32::INFINITY }
+}
