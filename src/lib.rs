@@ -19,6 +19,7 @@
 pub mod cli;
 pub mod compare;
 pub mod contour;
+pub mod field;
 pub mod fit;
 #[cfg(feature = "gpu")]
 pub mod gpu;
