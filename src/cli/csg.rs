@@ -1,5 +1,6 @@
 //! `csg EXPR NAME=FILE... -o OUT`.
 
+use std::fmt;
 use std::path::Path;
 
 use super::args::CsgArgs;
@@ -8,6 +9,7 @@ use super::exit::{Exit, Failure};
 use super::report::RunReport;
 use super::session::Session;
 use super::solid::{self, Job};
+use crate::field::language::LanguageError;
 
 /// Evaluates the expression over the named files.
 pub fn run(args: &CsgArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
@@ -29,7 +31,8 @@ pub fn paths(operands: &[String]) -> Vec<&Path> {
     operands.iter().filter_map(|operand| operand.split_once('=')).map(|(_, path)| Path::new(path)).collect()
 }
 
-fn named_files(operands: &[String]) -> Result<Vec<(&str, &Path)>, Failure> {
+/// Names and paths of `NAME=FILE` arguments.
+pub(super) fn named_files(operands: &[String]) -> Result<Vec<(&str, &Path)>, Failure> {
     let mut files: Vec<(&str, &Path)> = Vec::new();
     for operand in operands {
         let (name, path) = operand.split_once('=').filter(|(_, path)| !path.is_empty()).ok_or_else(|| {
@@ -47,9 +50,40 @@ fn named_files(operands: &[String]) -> Result<Vec<(&str, &Path)>, Failure> {
     Ok(files)
 }
 
+/// An error in a text, which may know its place.
+pub(super) trait Placed: fmt::Display {
+    /// Bytes from the start of the text.
+    fn position(&self) -> Option<usize>;
+    /// Something to try; `names` are those that files were given for.
+    fn hint(&self, names: &[&str]) -> Option<String>;
+}
+
+impl Placed for ExpressionError {
+    fn position(&self) -> Option<usize> {
+        self.position()
+    }
+
+    fn hint(&self, names: &[&str]) -> Option<String> {
+        match self {
+            Self::UnknownName { .. } => Some(format!("the names given are {}", names.join(", "))),
+            Self::UnusedNames { .. } => Some("use them, or leave their files away".into()),
+            _ => None,
+        }
+    }
+}
+
+impl Placed for LanguageError {
+    fn position(&self) -> Option<usize> {
+        self.position()
+    }
+
+    fn hint(&self, _names: &[&str]) -> Option<String> {
+        self.hint()
+    }
+}
+
 /// The error with a caret below its place, and what could have been written.
-fn explain(text: &str, names: &[&str], error: &ExpressionError) -> Failure {
-    let list = names.join(", ");
+pub(super) fn explain(text: &str, names: &[&str], error: &impl Placed) -> Failure {
     let failure = match error.position() {
         Some(at) => {
             let column = text[..at].chars().count();
@@ -60,16 +94,16 @@ fn explain(text: &str, names: &[&str], error: &ExpressionError) -> Failure {
         }
         None => Failure::usage(error.to_string()),
     };
-    match error {
-        ExpressionError::UnknownName { .. } => failure.hint(format!("the names given are {list}")),
-        ExpressionError::UnusedNames { .. } => failure.hint("use them, or leave their files away"),
-        _ => failure,
+    match error.hint(names) {
+        Some(hint) => failure.hint(hint),
+        None => failure,
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::language;
 
     #[test]
     fn operands_need_a_name_and_a_file() {
@@ -90,5 +124,14 @@ mod tests {
         let failure = explain("a - ü", &["a"], &error);
         assert_eq!(failure.message, "column 5 of the expression: expected a name or `(`, found `ü`");
         assert_eq!(failure.place.as_deref(), Some("  a - ü\n      ^"));
+    }
+
+    #[test]
+    fn errors_of_fields_are_shown_alike() {
+        let error = language::parse("a | ofset(b, 1mm)", &["a", "b"]).unwrap_err();
+        let failure = explain("a | ofset(b, 1mm)", &["a", "b"], &error);
+        assert_eq!(failure.message, "column 5 of the expression: there is no function `ofset`");
+        assert_eq!(failure.place.as_deref(), Some("  a | ofset(b, 1mm)\n      ^"));
+        assert_eq!(failure.hint.as_deref(), Some("did you mean `offset`?"));
     }
 }

@@ -14,6 +14,7 @@ pub mod blob;
 mod combined;
 mod fill;
 pub mod filter;
+pub mod language;
 mod level;
 mod material;
 mod mesh;

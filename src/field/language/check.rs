@@ -1,0 +1,258 @@
+//! From the form of a text to its meaning: names, functions and arguments looked up, counted and ranged.
+
+use super::FRAME;
+use super::error::LanguageError;
+use super::syntax::{Form, Raw, Raws};
+use super::table::{Axis, FUNCTIONS, Function, Kind, List, Parameter, Presence, Preset, Signature};
+use super::tree::{Argument, Call, Node, NodeKind, Quantity, Span, Typed, check_range};
+
+type Result<T> = std::result::Result<T, LanguageError>;
+
+/// Names at this many typing errors from each other are near.
+const NEAR: usize = 2;
+/// Of a piece of text, an error shows so many characters.
+const SHOWN: usize = 24;
+
+/// The tree of `raw`, which is the form of `text`, over operands that go by `names`.
+pub(super) fn check(raw: &Raw<'_>, text: &str, names: &[&str]) -> Result<Node> {
+    let mut checker = Checker { text, names, used: vec![false; names.len()] };
+    let node = checker.field(raw, "the expression")?;
+    let unused: Vec<String> =
+        names.iter().zip(&checker.used).filter(|(_, used)| !**used).map(|(name, _)| name.to_string()).collect();
+    if unused.is_empty() { Ok(node) } else { Err(LanguageError::UnusedNames { names: unused }) }
+}
+
+struct Checker<'a> {
+    text: &'a str,
+    names: &'a [&'a str],
+    used: Vec<bool>,
+}
+
+/// The arguments of one call, by what they are for.
+struct Sorted<'r, 'a> {
+    fields: Vec<&'r Raw<'a>>,
+    /// One for each parameter.
+    parameters: Vec<Option<&'r Raw<'a>>>,
+}
+
+impl Checker<'_> {
+    /// `raw` as a field, which is wanted for `what`.
+    fn field(&mut self, raw: &Raw<'_>, what: &str) -> Result<Node> {
+        let kind = match &raw.form {
+            Form::Name(name) => self.operand(name, raw.span, what)?,
+            Form::Quantity(value, _) => return Err(self.not_a_field(raw, *value, what)),
+            Form::Operator(function, fields) => {
+                let what = function.signature().to_string();
+                let fields = fields.iter().map(|field| self.field(field, &what)).collect::<Result<_>>()?;
+                NodeKind::Call(Call { function: *function, fields, arguments: Vec::new(), list: Vec::new() })
+            }
+            Form::Call { name, arguments, list } => {
+                let function = Function::by_name(name).ok_or_else(|| unknown_function(name, raw.span))?;
+                NodeKind::Call(self.call(function, arguments, list.as_ref(), raw.span)?)
+            }
+        };
+        Ok(Node { span: raw.span, kind })
+    }
+
+    fn operand(&mut self, name: &str, span: Span, what: &str) -> Result<NodeKind> {
+        let at = span.start;
+        if name == FRAME {
+            let wanted = "a field, and t is a number".into();
+            return Err(LanguageError::WrongKind { at, what: what.into(), wanted, found: name.into() });
+        }
+        let known = || self.names.iter().map(|name| name.to_string()).collect();
+        let operand = self.names.iter().position(|n| *n == name);
+        let operand = operand.ok_or_else(|| LanguageError::UnknownName { at, name: name.into(), known: known() })?;
+        self.used[operand] = true;
+        Ok(NodeKind::Name { operand, name: name.into() })
+    }
+
+    fn call(
+        &mut self,
+        function: Function,
+        arguments: &[(Option<&str>, Raw<'_>)],
+        list: Option<&Raws<'_>>,
+        span: Span,
+    ) -> Result<Call> {
+        let signature = function.signature();
+        let sorted = sort(signature, arguments)?;
+        let mut fields = Vec::new();
+        for (n, raw) in sorted.fields.iter().enumerate() {
+            let what = match signature.fields.get(n) {
+                Some(name) => format!("{name} of {signature}"),
+                None => signature.to_string(),
+            };
+            if signature.plain_name && !matches!(raw.form, Form::Name(_)) {
+                let wanted = "the name of a file".into();
+                return Err(LanguageError::WrongKind { at: raw.span.start, what, wanted, found: self.shown(raw.span) });
+            }
+            fields.push(self.field(raw, &what)?);
+        }
+        let missing = |what| LanguageError::Missing { at: span.end - 1, what, signature: signature.to_string() };
+        if let Some(what) = signature.fields.get(fields.len()) {
+            return Err(missing(what));
+        }
+        let pairs = signature.parameters.iter().zip(&sorted.parameters);
+        let arguments: Result<Vec<Typed>> = pairs
+            .map(|(parameter, raw)| match raw {
+                Some(raw) => self.argument(parameter, raw),
+                None => left_away(parameter, span).ok_or_else(|| missing(parameter.name)),
+            })
+            .collect();
+        let arguments = arguments?;
+        check_rivals(signature, &sorted.parameters)?;
+        let list = self.list(signature, list, fields.len(), span)?;
+        Ok(Call { function, fields, arguments, list })
+    }
+
+    fn argument(&self, parameter: &Parameter, raw: &Raw<'_>) -> Result<Typed> {
+        let argument = match (&raw.form, parameter.kind) {
+            (Form::Quantity(value, suffix), kind) if kind != Kind::Axis => {
+                let quantity = Quantity { value: *value, suffix: suffix.to_string() };
+                if !value.is_finite() {
+                    return Err(self.overflow(raw));
+                }
+                if matches!(kind, Kind::Number(..) | Kind::Count(..)) && !suffix.is_empty() {
+                    return Err(self.wrong_kind(parameter, raw));
+                }
+                check_range(parameter, &quantity, raw.span)?;
+                Some(Argument::Quantity(quantity))
+            }
+            (Form::Name(name), Kind::Axis) => {
+                Axis::ALL.into_iter().find(|axis| axis.name() == *name).map(Argument::Axis)
+            }
+            (Form::Name(FRAME), Kind::Number(..)) => Some(Argument::Frame),
+            _ => None,
+        };
+        match argument {
+            Some(argument) => Ok(Typed { span: raw.span, argument }),
+            None => Err(self.wrong_kind(parameter, raw)),
+        }
+    }
+
+    /// The numbers after the `;` of a call with `count` fields.
+    fn list(&self, signature: &Signature, given: Option<&Raws<'_>>, count: usize, call: Span) -> Result<Vec<f64>> {
+        let wanted = if signature.list == List::None { 0 } else { count };
+        let numbers = match given {
+            Some(raws) => raws.items.iter().map(|raw| self.number(raw)).collect::<Result<Vec<f64>>>()?,
+            None if signature.list == List::Weights => vec![1.0; count],
+            None => Vec::new(),
+        };
+        let at = given.map_or(call.end - 1, |raws| raws.span.start);
+        if numbers.len() != wanted {
+            let found = numbers.len();
+            return Err(LanguageError::WrongCount { at, signature: signature.to_string(), wanted, found });
+        }
+        let sum = numbers.iter().sum::<f64>();
+        if signature.list == List::Weights && !(sum > 0.0 && sum.is_finite()) {
+            let (what, wanted) = ("the sum of the weights".into(), "above zero".into());
+            return Err(LanguageError::OutOfRange { at, what, wanted, found: sum.to_string() });
+        }
+        Ok(numbers)
+    }
+
+    fn number(&self, raw: &Raw<'_>) -> Result<f64> {
+        match raw.form {
+            Form::Quantity(value, "") if value.is_finite() => Ok(value),
+            Form::Quantity(_, "") => Err(self.overflow(raw)),
+            _ => Err(LanguageError::WrongKind {
+                at: raw.span.start,
+                what: "what follows the ;".into(),
+                wanted: "plain numbers".into(),
+                found: self.shown(raw.span),
+            }),
+        }
+    }
+
+    fn overflow(&self, raw: &Raw<'_>) -> LanguageError {
+        LanguageError::Overflow { at: raw.span.start, text: self.shown(raw.span) }
+    }
+
+    fn wrong_kind(&self, parameter: &Parameter, raw: &Raw<'_>) -> LanguageError {
+        let (what, wanted) = (parameter.name.into(), parameter.kind.to_string());
+        LanguageError::WrongKind { at: raw.span.start, what, wanted, found: self.shown(raw.span) }
+    }
+
+    fn not_a_field(&self, raw: &Raw<'_>, value: f64, what: &str) -> LanguageError {
+        if !value.is_finite() {
+            return self.overflow(raw);
+        }
+        let (what, wanted) = (what.into(), "a field".into());
+        LanguageError::WrongKind { at: raw.span.start, what, wanted, found: self.shown(raw.span) }
+    }
+
+    /// The text of `span`, shortened.
+    fn shown(&self, span: Span) -> String {
+        let text = self.text.get(span.start..span.end).unwrap_or_default();
+        match text.char_indices().nth(SHOWN) {
+            Some((end, _)) => format!("{}…", &text[..end]),
+            None => text.into(),
+        }
+    }
+}
+
+/// Which argument is for what: fields first, then parameters in order, then parameters by name.
+fn sort<'r, 'a>(signature: &Signature, arguments: &'r [(Option<&str>, Raw<'a>)]) -> Result<Sorted<'r, 'a>> {
+    let room = if signature.more_fields { arguments.len() } else { signature.fields.len() };
+    let mut sorted = Sorted { fields: Vec::new(), parameters: vec![None; signature.parameters.len()] };
+    let (mut next, mut named) = (0, false);
+    for (name, raw) in arguments {
+        let at = raw.span.start;
+        let number = match name {
+            Some(name) => {
+                named = true;
+                signature.parameters.iter().position(|parameter| parameter.name == *name).ok_or_else(|| {
+                    LanguageError::UnknownParameter { at, name: name.to_string(), signature: signature.to_string() }
+                })?
+            }
+            None if named => return Err(LanguageError::Unnamed { at, signature: signature.to_string() }),
+            None if sorted.fields.len() < room => {
+                sorted.fields.push(raw);
+                continue;
+            }
+            None => {
+                next += 1;
+                next - 1
+            }
+        };
+        let slot = sorted.parameters.get_mut(number);
+        let slot = slot.ok_or_else(|| LanguageError::TooMany { at, signature: signature.to_string() })?;
+        if slot.replace(raw).is_some() {
+            let name = signature.parameters[number].name;
+            return Err(LanguageError::GivenTwice { at, name, other: name });
+        }
+    }
+    Ok(sorted)
+}
+
+/// Refuses a parameter that is given together with the one it replaces.
+fn check_rivals(signature: &Signature, given: &[Option<&Raw<'_>>]) -> Result<()> {
+    for (parameter, raw) in signature.parameters.iter().zip(given) {
+        let (Presence::InsteadOf(other), Some(raw)) = (parameter.presence, raw) else { continue };
+        let both = signature.parameters.iter().zip(given).any(|(p, raw)| p.name == other && raw.is_some());
+        if both {
+            return Err(LanguageError::GivenTwice { at: raw.span.start, name: parameter.name, other });
+        }
+    }
+    Ok(())
+}
+
+/// What stands for a parameter that is not given; `None` if it must be.
+fn left_away(parameter: &Parameter, span: Span) -> Option<Typed> {
+    let argument = match parameter.presence {
+        Presence::Required => return None,
+        Presence::Optional | Presence::InsteadOf(_) => Argument::Absent,
+        Presence::Default(Preset::Axis(axis)) => Argument::Axis(axis),
+        Presence::Default(Preset::Quantity(value, suffix)) => {
+            Argument::Quantity(Quantity { value, suffix: suffix.into() })
+        }
+    };
+    Some(Typed { span, argument })
+}
+
+fn unknown_function(name: &str, span: Span) -> LanguageError {
+    let distance = |candidate: &str| strsim::damerau_levenshtein(name, candidate);
+    let near = FUNCTIONS.iter().map(|signature| (distance(signature.name), signature.name));
+    let nearest = near.filter(|(distance, _)| *distance <= NEAR).min_by_key(|(distance, _)| *distance);
+    LanguageError::UnknownFunction { at: span.start, name: name.into(), nearest: nearest.map(|(_, name)| name) }
+}

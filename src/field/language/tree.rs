@@ -1,0 +1,297 @@
+//! The checked tree, and its lengths in model units.
+
+use std::fmt;
+use std::ops::Range;
+
+use super::error::LanguageError;
+use super::table::{Axis, Function, Kind, List, Parameter};
+
+/// A piece of the text, in bytes from its start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Span {
+    /// Its first byte.
+    pub start: usize,
+    /// The byte after its last.
+    pub end: usize,
+}
+
+impl From<Range<usize>> for Span {
+    fn from(range: Range<usize>) -> Self {
+        Self { start: range.start, end: range.end }
+    }
+}
+
+/// A field: an operand, or what a function makes of fields. Arguments are as typed, or resolved: `Node<Value>`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Node<A = Typed> {
+    /// Where it stands in the text.
+    pub span: Span,
+    /// What it is.
+    pub kind: NodeKind<A>,
+}
+
+/// What a [`Node`] is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NodeKind<A = Typed> {
+    /// One of the operands.
+    Name {
+        /// Its number.
+        operand: usize,
+        /// Its name.
+        name: String,
+    },
+    /// A function of fields.
+    Call(Call<A>),
+}
+
+/// A call of a function, with all that the function's [`Signature`](super::Signature) asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Call<A = Typed> {
+    /// Of which function.
+    pub function: Function,
+    /// Its fields, as many as the signature asks for.
+    pub fields: Vec<Node<A>>,
+    /// Its arguments, one for each parameter of the signature.
+    pub arguments: Vec<A>,
+    /// Weights or values, one for each field; empty for functions that take none.
+    pub list: Vec<f64>,
+}
+
+/// An argument as it was typed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Typed {
+    /// Where it stands in the text; for what was left away, where the call stands.
+    pub span: Span,
+    /// What it is.
+    pub argument: Argument,
+}
+
+/// What was typed, or stands in the table for what was left away.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Argument {
+    /// A number, perhaps with a unit.
+    Quantity(Quantity),
+    /// An axis.
+    Axis(Axis),
+    /// The share of a sequence of frames that has passed.
+    Frame,
+    /// Nothing: an optional parameter that is not given.
+    Absent,
+}
+
+/// A number and what stands behind it: `0.4mm`, `1%`, `3`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quantity {
+    /// The number, finite.
+    pub value: f64,
+    /// Letters, `%`, or nothing.
+    pub suffix: String,
+}
+
+/// An argument that needs nothing more to be used.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value {
+    /// Of [`Kind::Length`] and [`Kind::SignedLength`]: model units, finite.
+    Length(f64),
+    /// Of [`Kind::Place`].
+    Place(Place),
+    /// Of [`Kind::Number`], within its range.
+    Number(f64),
+    /// Of [`Kind::Count`], within its range.
+    Count(u64),
+    /// Of [`Kind::Axis`].
+    Axis(Axis),
+    /// Not given.
+    Absent,
+}
+
+/// A coordinate along an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Place {
+    /// Model units.
+    At(f64),
+    /// A share of the extent along the axis: 0 is its lower end, 1 its upper.
+    Share(f64),
+}
+
+impl<A> Call<A> {
+    /// The argument for the parameter called `name`; `None` if the function has none of that name.
+    pub fn argument(&self, name: &str) -> Option<&A> {
+        let number = self.function.signature().parameters.iter().position(|parameter| parameter.name == name)?;
+        self.arguments.get(number)
+    }
+}
+
+impl Call<Value> {
+    /// The length called `name`, model units; `None` where it is absent.
+    pub fn length(&self, name: &str) -> Option<f64> {
+        if let Value::Length(length) = self.argument(name)? { Some(*length) } else { None }
+    }
+
+    /// The number called `name`.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        if let Value::Number(number) = self.argument(name)? { Some(*number) } else { None }
+    }
+
+    /// The whole number called `name`.
+    pub fn count(&self, name: &str) -> Option<u64> {
+        if let Value::Count(count) = self.argument(name)? { Some(*count) } else { None }
+    }
+
+    /// The axis called `name`.
+    pub fn axis(&self, name: &str) -> Option<Axis> {
+        if let Value::Axis(axis) = self.argument(name)? { Some(*axis) } else { None }
+    }
+
+    /// The coordinate called `name`.
+    pub fn place(&self, name: &str) -> Option<Place> {
+        if let Value::Place(place) = self.argument(name)? { Some(*place) } else { None }
+    }
+}
+
+impl Node {
+    /// Where `t` first stands, if it does: then the text is one of a sequence.
+    pub fn frame(&self) -> Option<Span> {
+        let NodeKind::Call(call) = &self.kind else { return None };
+        let of_fields = call.fields.iter().filter_map(Self::frame);
+        let own = call.arguments.iter().filter(|typed| typed.argument == Argument::Frame).map(|typed| typed.span);
+        of_fields.chain(own).min_by_key(|span| span.start)
+    }
+
+    /// The same with the number `t` for the frame.
+    ///
+    /// # Errors
+    /// [`LanguageError::OutOfRange`] where a parameter does not take that number.
+    pub fn at_frame(&self, t: f64) -> Result<Self, LanguageError> {
+        self.map(&mut |what, typed| {
+            let Argument::Frame = typed.argument else { return Ok(typed.clone()) };
+            let quantity = Quantity { value: t, suffix: String::new() };
+            check_range(what, &quantity, typed.span)?;
+            Ok(Typed { span: typed.span, argument: Argument::Quantity(quantity) })
+        })
+    }
+
+    /// The same with all arguments ready for use. `length` says what a number with a suffix is in model units, or why it
+    /// is nothing; it is asked about lengths only.
+    ///
+    /// # Errors
+    /// At the place of the argument: what `length` says, a length that must be above zero and is not, or `t`.
+    pub fn resolve(
+        &self,
+        mut length: impl FnMut(f64, &str) -> Result<f64, String>,
+    ) -> Result<Node<Value>, LanguageError> {
+        self.map(&mut |what, typed| match &typed.argument {
+            Argument::Quantity(quantity) => resolve(what, quantity, typed.span, &mut length),
+            Argument::Axis(axis) => Ok(Value::Axis(*axis)),
+            Argument::Frame => Err(LanguageError::NoFrame { at: typed.span.start }),
+            Argument::Absent => Ok(Value::Absent),
+        })
+    }
+}
+
+impl<A> Node<A> {
+    /// The same tree with other arguments.
+    fn map<B>(&self, change: &mut Change<'_, A, B>) -> Result<Node<B>, LanguageError> {
+        let kind = match &self.kind {
+            NodeKind::Name { operand, name } => NodeKind::Name { operand: *operand, name: name.clone() },
+            NodeKind::Call(Call { function, fields, arguments, list }) => {
+                let fields = fields.iter().map(|field| field.map(change)).collect::<Result<_, _>>()?;
+                let pairs = function.signature().parameters.iter().zip(arguments);
+                let arguments = pairs.map(|(what, argument)| change(what, argument)).collect::<Result<_, _>>()?;
+                NodeKind::Call(Call { function: *function, fields, arguments, list: list.clone() })
+            }
+        };
+        Ok(Node { span: self.span, kind })
+    }
+}
+
+type Change<'c, A, B> = dyn FnMut(&Parameter, &A) -> Result<B, LanguageError> + 'c;
+
+/// Whether `quantity` can be what `parameter` takes, as far as this can be told without the model.
+pub(super) fn check_range(parameter: &Parameter, quantity: &Quantity, span: Span) -> Result<(), LanguageError> {
+    let value = quantity.value;
+    let right = match parameter.kind {
+        Kind::Length => value > 0.0,
+        Kind::Number(from, to) => (from..=to).contains(&value),
+        Kind::Count(from, to) => value.fract() == 0.0 && (from as f64..=to as f64).contains(&value),
+        Kind::SignedLength | Kind::Place | Kind::Axis => true,
+    };
+    if right { Ok(()) } else { Err(out_of_range(parameter, quantity.to_string(), span)) }
+}
+
+fn out_of_range(parameter: &Parameter, found: String, span: Span) -> LanguageError {
+    let (what, wanted) = (parameter.name.into(), parameter.kind.to_string());
+    LanguageError::OutOfRange { at: span.start, what, wanted, found }
+}
+
+fn resolve(
+    parameter: &Parameter,
+    quantity: &Quantity,
+    span: Span,
+    length: &mut impl FnMut(f64, &str) -> Result<f64, String>,
+) -> Result<Value, LanguageError> {
+    let mut in_model_units = || {
+        let reason = |reason| LanguageError::Quantity { at: span.start, reason };
+        let length = length(quantity.value, &quantity.suffix).map_err(reason)?;
+        let right = length.is_finite() && (parameter.kind != Kind::Length || length > 0.0);
+        if right { Ok(length) } else { Err(out_of_range(parameter, format!("{quantity} = {length}"), span)) }
+    };
+    Ok(match parameter.kind {
+        Kind::Number(..) => Value::Number(quantity.value),
+        Kind::Count(..) => Value::Count(quantity.value as u64),
+        Kind::Place if quantity.suffix == "%" => Value::Place(Place::Share(quantity.value / 100.0)),
+        Kind::Place => Value::Place(Place::At(in_model_units()?)),
+        // No quantity stands for an axis, see `check`.
+        Kind::Length | Kind::SignedLength | Kind::Axis => Value::Length(in_model_units()?),
+    })
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", self.value, self.suffix)
+    }
+}
+
+/// As functions of fields, with the arguments that have defaults; parsed again, it is the same tree.
+impl fmt::Display for Node {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.kind {
+            NodeKind::Name { name, .. } => f.write_str(name),
+            NodeKind::Call(call) => call.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for Call {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let signature = self.function.signature();
+        write!(f, "{}(", signature.name)?;
+        let (mut separator, mut named) = ("", false);
+        for field in &self.fields {
+            write!(f, "{separator}{field}")?;
+            separator = ", ";
+        }
+        for (parameter, typed) in signature.parameters.iter().zip(&self.arguments) {
+            let text = match &typed.argument {
+                Argument::Quantity(quantity) => quantity.to_string(),
+                Argument::Axis(axis) => axis.to_string(),
+                Argument::Frame => super::FRAME.to_string(),
+                Argument::Absent => {
+                    named = true;
+                    continue;
+                }
+            };
+            f.write_str(separator)?;
+            if named {
+                write!(f, "{}=", parameter.name)?;
+            }
+            f.write_str(&text)?;
+            separator = ", ";
+        }
+        if signature.list != List::None {
+            let numbers: Vec<String> = self.list.iter().map(f64::to_string).collect();
+            write!(f, "; {}", numbers.join(", "))?;
+        }
+        f.write_str(")")
+    }
+}
