@@ -129,6 +129,7 @@ impl Failure {
             Error::MissingCanal { .. } => {
                 Self::usage(error.to_string()).hint("without --remove they are listed with their numbers")
             }
+            Error::Filter(error) => Self::usage(error.to_string()),
             Error::Gpu { reason, hint } => Self::new(Exit::Internal, reason.clone()).hint(hint.clone()),
             Error::MissingOperand { .. } => Self::internal(error.to_string()),
         }

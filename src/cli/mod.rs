@@ -11,6 +11,7 @@ mod csg;
 mod csg_parser;
 mod devices;
 mod exit;
+mod field;
 mod input;
 mod inspect;
 mod length;
@@ -87,6 +88,11 @@ fn dispatch(verb: &Verb) -> Exit {
         Verb::Sdf(args) => run("sdf", &args.common, &[&args.input], args.output.as_deref(), |session, report| {
             sdf::run(args, session, report)
         }),
+        Verb::Field(args) => {
+            run("field", &args.common, &csg::paths(&args.operands), Some(&args.output), |session, report| {
+                field::run(args, session, report)
+            })
+        }
         Verb::Inspect(args) => {
             run("inspect", &args.common, &[&args.input], None, |session, report| inspect::run(args, session, report))
         }

@@ -11,7 +11,7 @@ use super::input::is_stream;
 use crate::compare::Comparison;
 use crate::io;
 use crate::mesh::Validity;
-use crate::pipeline::{DistancePlan, DistanceReport, Plan, Report, StageTime, ThicknessReport};
+use crate::pipeline::{DistancePlan, DistanceReport, FieldReport, Plan, Report, StageTime, ThicknessReport};
 
 /// Raised when a field changes its meaning or goes away; new fields do not raise it.
 pub const SCHEMA: u32 = 1;
@@ -45,6 +45,9 @@ pub struct RunReport {
     /// What `sdf` found and did.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance: Option<DistanceReport>,
+    /// What `field` was made of, one entry for each frame.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub fields: Vec<FieldReport>,
     /// What `inspect --thickness` measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<ThicknessReport>,
@@ -144,6 +147,7 @@ impl RunReport {
             plan: None,
             pipeline: None,
             distance: None,
+            fields: Vec::new(),
             thickness: None,
             devices: None,
             comparison: None,

@@ -194,7 +194,9 @@ fn make(
     }
     report.pipeline = Some(outcome.report.clone());
     if let Some(target) = target {
-        write(inputs, &outcome, target, session, report)?;
+        let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
+        let colours = pipeline::carry_colours(&outcome, &operands);
+        write(&outcome.mesh, colours.as_ref(), target, session, report)?;
     }
     let broken = limits::broken(report, options.max_memory);
     report.warnings.extend(broken.iter().cloned());
@@ -208,19 +210,17 @@ fn make(
 }
 
 /// Writes the result and judges the written file.
-fn write(
-    inputs: &[Input],
-    outcome: &Outcome,
+pub(super) fn write(
+    mesh: &TriMesh,
+    colours: Option<&Colours>,
     target: &Target,
     session: &Session,
     report: &mut RunReport,
 ) -> Result<(), Failure> {
-    let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
-    let colours = pipeline::carry_colours(outcome, &operands);
-    let lost = colours.as_ref().and_then(|c| super::convert::lost_colours(c, &outcome.mesh, target.options.format));
+    let lost = colours.and_then(|c| super::convert::lost_colours(c, mesh, target.options.format));
     report.warnings.extend(lost);
     let (entry, validity) = report.timed("write and verify", |_| {
-        write_verified(target, &outcome.mesh, colours.as_ref(), session, |read| judge(read, &outcome.mesh, session))
+        write_verified(target, mesh, colours, session, |read| judge(read, mesh, session))
     })?;
     report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
     Ok(())

@@ -43,12 +43,20 @@ fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
         rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
         rows.extend(thin(pipeline, unit).map(|text| ("thin", text)));
     }
-    if let Some((output, validity)) = report.output.as_ref().and_then(|o| Some((o, o.validity.as_ref()?))) {
-        rows.push(("result", format!("{}: {}", output.path, solid(validity, unit))));
-        rows.push(("result", "closed, oriented, without self-intersections; checked on the written file".into()));
-    }
+    rows.extend(result_rows(report, unit));
     rows.push(time(report));
     rows
+}
+
+/// The mesh that was written.
+pub fn result_rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
+    let Some((output, validity)) = report.output.as_ref().and_then(|o| Some((o, o.validity.as_ref()?))) else {
+        return Vec::new();
+    };
+    vec![
+        ("result", format!("{}: {}", output.path, solid(validity, unit))),
+        ("result", "closed, oriented, without self-intersections; checked on the written file".into()),
+    ]
 }
 
 /// What was read, and what is wrong with it.

@@ -351,6 +351,13 @@ impl DistanceOutcome {
         }
     }
 
+    /// A field in h over `lattice`, with its report filled in.
+    pub(super) fn described(field: Grid<f32>, lattice: Lattice, band: Band, report: DistanceReport) -> Self {
+        let mut outcome = Self { field, lattice, report };
+        outcome.describe(band);
+        outcome
+    }
+
     /// Fills in what the report says of the field.
     fn describe(&mut self, band: Band) {
         let planes = (0..self.lattice.dims.z as usize).into_par_iter();

@@ -4,6 +4,7 @@ mod backend;
 mod canals;
 mod colours;
 mod distance;
+mod field;
 mod morphology;
 mod plan;
 mod prepare;
@@ -21,6 +22,9 @@ pub use distance::{
     DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, distance,
     plan_distance,
 };
+pub use field::{
+    Built, FieldBuilder, FieldReport, Operand, OperandReport, field_grid, field_surface, field_values,
+};
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
 pub use plan::{plan, plan_canals, plan_morphology, plan_thicken};
 pub use report::{LdiReport, Report, StageTime, ThinReport};
@@ -29,6 +33,7 @@ pub use thickness::{LengthsReport, ThicknessReport, thickness};
 
 use rayon::prelude::*;
 
+use crate::field::filter::FilterError;
 use crate::contour::{ContourOptions, contour};
 use crate::fit::{Facets, FitOptions, fit};
 use crate::lattice::Lattice;
@@ -183,6 +188,9 @@ pub enum Error {
         /// A voxel size that fits, model units; `None` when no size does.
         voxel_that_fits: Option<f64>,
     },
+    /// A filter cannot be.
+    #[error(transparent)]
+    Filter(FilterError),
     /// A canal was to be filled that is not in the list.
     #[error("there is no canal {number}: {count} were found")]
     MissingCanal {

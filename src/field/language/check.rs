@@ -15,17 +15,12 @@ const SHOWN: usize = 24;
 
 /// The tree of `raw`, which is the form of `text`, over operands that go by `names`.
 pub(super) fn check(raw: &Raw<'_>, text: &str, names: &[&str]) -> Result<Node> {
-    let mut checker = Checker { text, names, used: vec![false; names.len()] };
-    let node = checker.field(raw, "the expression")?;
-    let unused: Vec<String> =
-        names.iter().zip(&checker.used).filter(|(_, used)| !**used).map(|(name, _)| name.to_string()).collect();
-    if unused.is_empty() { Ok(node) } else { Err(LanguageError::UnusedNames { names: unused }) }
+    Checker { text, names }.field(raw, "the expression")
 }
 
 struct Checker<'a> {
     text: &'a str,
     names: &'a [&'a str],
-    used: Vec<bool>,
 }
 
 /// The arguments of one call, by what they are for.
@@ -37,7 +32,7 @@ struct Sorted<'r, 'a> {
 
 impl Checker<'_> {
     /// `raw` as a field, which is wanted for `what`.
-    fn field(&mut self, raw: &Raw<'_>, what: &str) -> Result<Node> {
+    fn field(&self, raw: &Raw<'_>, what: &str) -> Result<Node> {
         let kind = match &raw.form {
             Form::Name(name) => self.operand(name, raw.span, what)?,
             Form::Quantity(value, _) => return Err(self.not_a_field(raw, *value, what)),
@@ -54,7 +49,7 @@ impl Checker<'_> {
         Ok(Node { span: raw.span, kind })
     }
 
-    fn operand(&mut self, name: &str, span: Span, what: &str) -> Result<NodeKind> {
+    fn operand(&self, name: &str, span: Span, what: &str) -> Result<NodeKind> {
         let at = span.start;
         if name == FRAME {
             let wanted = "a field, and t is a number".into();
@@ -63,12 +58,11 @@ impl Checker<'_> {
         let known = || self.names.iter().map(|name| name.to_string()).collect();
         let operand = self.names.iter().position(|n| *n == name);
         let operand = operand.ok_or_else(|| LanguageError::UnknownName { at, name: name.into(), known: known() })?;
-        self.used[operand] = true;
         Ok(NodeKind::Name { operand, name: name.into() })
     }
 
     fn call(
-        &mut self,
+        &self,
         function: Function,
         arguments: &[(Option<&str>, Raw<'_>)],
         list: Option<&Raws<'_>>,

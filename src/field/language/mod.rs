@@ -32,6 +32,18 @@ pub const FRAME: &str = "t";
 /// # Errors
 /// See [`LanguageError`]; also when one of the names is not used.
 pub fn parse(text: &str, names: &[&str]) -> Result<Node, LanguageError> {
+    let node = parse_some(text, names)?;
+    let used = node.operands();
+    let unused = names.iter().enumerate().filter(|(n, _)| !used.contains(n));
+    let unused: Vec<String> = unused.map(|(_, name)| name.to_string()).collect();
+    if unused.is_empty() { Ok(node) } else { Err(LanguageError::UnusedNames { names: unused }) }
+}
+
+/// The same for a text that need not use all names.
+///
+/// # Errors
+/// See [`LanguageError`].
+pub fn parse_some(text: &str, names: &[&str]) -> Result<Node, LanguageError> {
     if names.contains(&FRAME) {
         return Err(LanguageError::ReservedName);
     }

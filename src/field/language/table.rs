@@ -224,7 +224,7 @@ pub const FUNCTIONS: [Signature; Function::Levels as usize + 1] = [
         &[required("amount", SHARE)],
     ),
     listed(
-        of_many(Function::Material, "material", "the union, with a value that passes smoothly from shape to shape"),
+        of_many(Function::Material, "material", "no shape: a value on each shape, passing smoothly from one to the other between them"),
         List::Values,
     ),
     with(
@@ -232,13 +232,14 @@ pub const FUNCTIONS: [Signature; Function::Levels as usize + 1] = [
             Function::Filter,
             "filter",
             &["a"],
-            "the same surface, the field smooth away from it; width: of the bump kernel, 8/9 of cap; sigma: a Gaussian kernel",
+            "the same surface, the field smooth away from it; width: of the bump kernel, 8/9 of cap; sigma: a Gaussian kernel instead; least: fewest samples where few are enough",
         ),
         &[
             default("cap", Kind::Length, Preset::Quantity(5.0, "%")),
             optional("width", Kind::Length),
             Parameter { name: "sigma", kind: Kind::Length, presence: Presence::InsteadOf("width") },
             SAMPLES,
+            optional("least", Kind::Count(2, 65_536)),
         ],
     ),
     with(
@@ -273,7 +274,7 @@ pub const FUNCTIONS: [Signature; Function::Levels as usize + 1] = [
         ),
         BLOB,
     ),
-    with(of_fields(Function::Compare, "compare", &["a", "b"], "how far the blobby fields differ"), BLOB),
+    with(of_fields(Function::Compare, "compare", &["a", "b"], "no shape: how much more a is there than b, from -1 to 1"), BLOB),
     with(
         of_fields(Function::Points, "points", &[], "the distance to random points in the box of the operands"),
         &[

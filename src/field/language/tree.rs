@@ -1,5 +1,6 @@
 //! The checked tree, and its lengths in model units.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::ops::Range;
 
@@ -190,6 +191,14 @@ impl Node {
 }
 
 impl<A> Node<A> {
+    /// The numbers of the operands that it uses.
+    pub fn operands(&self) -> BTreeSet<usize> {
+        match &self.kind {
+            NodeKind::Name { operand, .. } => BTreeSet::from([*operand]),
+            NodeKind::Call(call) => call.fields.iter().flat_map(Self::operands).collect(),
+        }
+    }
+
     /// The same tree with other arguments.
     fn map<B>(&self, change: &mut Change<'_, A, B>) -> Result<Node<B>, LanguageError> {
         let kind = match &self.kind {

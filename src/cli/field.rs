@@ -1,0 +1,391 @@
+//! `field EXPR NAME=FILE... -o OUT`: shapes and lattices of values by an expression.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+
+use super::args::FieldArgs;
+use super::csg::{explain, named_files};
+use super::exit::{Exit, Failure};
+use super::input::{self, Input, is_stream};
+use super::length::{BandChoice, Length, Scale, Simplify};
+use super::output::{self, Target};
+use super::report::RunReport;
+use super::session::Session;
+use super::summary::{self, Row};
+use super::words::{self, UnitName};
+use super::{limits, sdf, solid};
+use crate::field::language::{self, LanguageError, Node, Value};
+use crate::fit::FitOptions;
+use crate::io::{Colours, GridFormat, Unit, WriteOptions};
+use crate::mesh::Bounds;
+use crate::pipeline::{self, Built, FieldBuilder, FieldReport, Operand, Options, VoxelSize};
+use crate::picture::ramp_colour;
+
+/// Makes what the expression says of the named files.
+pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
+    let files = named_files(&args.operands)?;
+    let texts = Texts::parse(args, &files)?;
+    let paths: Vec<&Path> = files.iter().map(|(_, path)| *path).collect();
+    let targets = targets(args, &paths)?;
+    let mut inputs = report.timed("read", |_| input::read_all(&paths, &args.reading, session))?;
+    for (input, (name, _)) in inputs.iter_mut().zip(&files) {
+        input.entry.name = Some(name.to_string());
+    }
+    let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
+    report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
+    report.timed("examine", |report| {
+        session.progress.stage("examine")?;
+        for (input, entry) in inputs.iter().zip(&mut report.inputs) {
+            entry.validity = Some(input::examine(&input.loaded, session)?);
+        }
+        Ok::<(), Failure>(())
+    })?;
+    let operands: Vec<Operand> = inputs.iter().map(|input| Operand::Mesh(input.loaded.mesh.clone())).collect();
+    let bounds = operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
+    let scale = scale(args, unit, bounds.as_ref())?;
+    let options = options(args, &scale, &inputs)?;
+    report.options = resolved(args, unit, &options, &scale);
+    let mut run = Run {
+        args,
+        texts: &texts,
+        scale: &scale,
+        inputs: &inputs,
+        options: &options,
+        session,
+        builder: FieldBuilder::new(&operands, &options, &session.progress),
+    };
+    for (number, target) in targets.iter().enumerate() {
+        run.frame(number, targets.len(), target, report)?;
+    }
+    let broken = limits::broken(report, options.max_memory);
+    report.warnings.extend(broken.iter().cloned());
+    report.seconds = session.start.elapsed().as_secs_f64();
+    report.peak_memory_bytes = super::report::peak_memory();
+    session.clear_bar();
+    say(session, report, targets.len(), unit);
+    Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+}
+
+/// The expressions, parsed.
+struct Texts<'a> {
+    names: Vec<&'a str>,
+    field: (&'a str, Node),
+    paint: Option<(&'a str, Node)>,
+}
+
+impl<'a> Texts<'a> {
+    fn parse(args: &'a FieldArgs, files: &[(&'a str, &'a Path)]) -> Result<Self, Failure> {
+        let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
+        let one = |text: &'a str| match language::parse_some(text, &names) {
+            Ok(node) => Ok((text, node)),
+            Err(error) => Err(explain(text, &names, &error)),
+        };
+        let (field, paint) = (one(&args.expression)?, args.paint.as_deref().map(one).transpose()?);
+        let texts = Self { names, field, paint };
+        let mut used = texts.field.1.operands();
+        used.extend(texts.paint.iter().flat_map(|(_, node)| node.operands()));
+        let unused = texts.names.iter().enumerate().filter(|(n, _)| !used.contains(n));
+        let unused: Vec<String> = unused.map(|(_, name)| name.to_string()).collect();
+        if !unused.is_empty() {
+            return Err(explain(&args.expression, &texts.names, &LanguageError::UnusedNames { names: unused }));
+        }
+        match (texts.frame(), args.frames) {
+            (Some((text, at)), None) => Err(explain(text, &texts.names, &LanguageError::NoFrame { at })),
+            (None, Some(_)) => {
+                let failure = Failure::usage("--frames makes a sequence, and the expression has no `t` that changes");
+                Err(failure.hint("for example 'morph(a, b, t)'"))
+            }
+            _ => Ok(texts),
+        }
+    }
+
+    /// Where `t` stands.
+    fn frame(&self) -> Option<(&'a str, usize)> {
+        let all = std::iter::once(&self.field).chain(&self.paint);
+        all.into_iter().find_map(|(text, node)| Some((*text, node.frame()?.start)))
+    }
+}
+
+/// Where one result goes.
+enum Place {
+    Mesh(Target),
+    Grid(PathBuf, GridFormat),
+}
+
+impl Place {
+    fn path(&self) -> &Path {
+        match self {
+            Self::Mesh(target) => &target.path,
+            Self::Grid(path, _) => path,
+        }
+    }
+}
+
+/// A place for each frame; everything about them that can be known before the work begins is checked.
+fn targets(args: &FieldArgs, paths: &[&Path]) -> Result<Vec<Place>, Failure> {
+    let frames = args.frames.unwrap_or(1);
+    if frames > 1 && is_stream(&args.output) {
+        return Err(Failure::usage("a sequence cannot go to standard output").hint("a name after -o, such as morph.ply"));
+    }
+    let place = |number: u32| {
+        let path = if frames > 1 { numbered(&args.output, number, frames) } else { args.output.clone() };
+        match GridFormat::from_path(&path).filter(|_| args.writing.out_format.is_none()) {
+            Some(_) if args.paint.is_some() => {
+                Err(Failure::usage("--paint colours the vertices of a mesh, and a lattice has none")
+                    .hint("the values themselves: the expression of --paint in the place of EXPR"))
+            }
+            Some(format) => {
+                output::check_overwrite(&path, args.writing.force, paths)?;
+                Ok(Place::Grid(path, format))
+            }
+            None => Target::new(&path, &args.writing, paths).map(Place::Mesh),
+        }
+    };
+    (0..frames).map(place).collect()
+}
+
+/// `morph.ply` as `morph_03.ply`, with as many digits as the last number has.
+fn numbered(path: &Path, number: u32, frames: u32) -> PathBuf {
+    let digits = (frames - 1).to_string().len();
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = path.extension().map_or(String::new(), |extension| format!(".{}", extension.to_string_lossy()));
+    path.with_file_name(format!("{stem}_{number:0digits$}{extension}"))
+}
+
+/// What lengths are measured against; without operands only lengths in model units mean something.
+fn scale(args: &FieldArgs, unit: Option<Unit>, bounds: Option<&Bounds>) -> Result<Scale, Failure> {
+    let diagonal = bounds.map_or(0.0, |bounds| bounds.diagonal());
+    let base = Scale { unit, diagonal, voxel: None };
+    let voxel = match (&args.voxel, bounds) {
+        (Some(length), _) => Some(length.resolve(&base)?),
+        (None, Some(bounds)) => Some(bounds.size().max_element() / f64::from(args.resolution)),
+        (None, None) => None,
+    };
+    Ok(Scale { voxel, ..base })
+}
+
+fn options(args: &FieldArgs, scale: &Scale, inputs: &[Input]) -> Result<Options, Failure> {
+    let voxel = match (&args.voxel, scale.voxel) {
+        (Some(_), Some(h)) => VoxelSize::Length(h),
+        _ => VoxelSize::Along(args.resolution),
+    };
+    let usual = FitOptions::default();
+    let tolerance = match (args.simplify, scale.voxel) {
+        (Some(Simplify::Off), _) => 0.0,
+        (Some(Simplify::Within(length)), Some(h)) if h > 0.0 => length.resolve(scale)? / h,
+        (Some(Simplify::Within(_)), _) => {
+            return Err(Failure::usage("--simplify cannot be measured without a file or --voxel"));
+        }
+        // Colours that vary are kept apart by the vertices.
+        _ if args.paint.is_some() => 0.0,
+        _ => usual.tolerance,
+    };
+    Ok(Options {
+        fit: (!args.no_fit).then_some(FitOptions { tolerance, ..usual }),
+        classes: inputs.iter().map(|input| pipeline::classes(input.loaded.colours.as_ref())).collect(),
+        orient: args.orient.into(),
+        collapse: !args.no_collapse,
+        max_memory: args.max_memory,
+        ..Options::new(voxel)
+    })
+}
+
+/// The options as the report states them, after defaults.
+fn resolved(args: &FieldArgs, unit: Option<Unit>, options: &Options, scale: &Scale) -> serde_json::Value {
+    json!({
+        "expression": args.expression,
+        "paint": args.paint,
+        "frames": args.frames,
+        "voxel": scale.voxel,
+        "resolution": args.voxel.is_none().then_some(args.resolution),
+        "band": args.band.to_string(),
+        "unit": unit.map(|unit| unit.to_string()),
+        "orient": format!("{:?}", options.orient).to_lowercase(),
+        "collapse": options.collapse,
+        "fit": options.fit.is_some(),
+        "simplify_voxels": options.fit.map(|fit| fit.tolerance),
+        "threads": rayon::current_num_threads(),
+        "max_memory_bytes": options.max_memory,
+        "timeout_seconds": args.common.timeout.map(|timeout| timeout.as_secs_f64()),
+    })
+}
+
+struct Run<'a> {
+    args: &'a FieldArgs,
+    texts: &'a Texts<'a>,
+    scale: &'a Scale,
+    inputs: &'a [Input],
+    options: &'a Options,
+    session: &'a Session,
+    builder: FieldBuilder<'a>,
+}
+
+impl Run<'_> {
+    fn frame(&mut self, number: usize, frames: usize, place: &Place, report: &mut RunReport) -> Result<(), Failure> {
+        let share = if frames > 1 { number as f64 / (frames - 1) as f64 } else { 0.0 };
+        let built = self.build(&self.texts.field, share)?;
+        match place {
+            Place::Mesh(target) => self.mesh(&built, share, target, report)?,
+            Place::Grid(path, format) => self.grid(&built, path, *format, report)?,
+        }
+        if frames > 1 {
+            self.session.say(&format!("frame {} of {frames}: {}", number + 1, place.path().display()));
+        }
+        Ok(())
+    }
+
+    fn build(&mut self, (text, node): &(&str, Node), share: f64) -> Result<Built, Failure> {
+        let named = |error: LanguageError| explain(text, &self.texts.names, &error);
+        let node: Node<Value> = node
+            .at_frame(share)
+            .and_then(|node| node.resolve(|value, suffix| length(value, suffix, self.scale)))
+            .map_err(named)?;
+        self.builder.build(&node).map_err(|e| self.failure(&e))
+    }
+
+    fn failure(&self, error: &pipeline::Error) -> Failure {
+        let labels: Vec<String> = self.inputs.iter().map(|input| input.label.clone()).collect();
+        let unit = self.scale.unit.map(|unit| unit.to_string());
+        Failure::pipeline(error, &labels, unit.as_deref(), self.args.voxel.is_some())
+    }
+
+    fn mesh(&mut self, built: &Built, share: f64, target: &Target, report: &mut RunReport) -> Result<(), Failure> {
+        let progress = &self.session.progress;
+        let made = pipeline::field_surface(built, self.options, progress);
+        let (outcome, account) = made.map_err(|e| self.failure(&e))?;
+        report.stages.extend(outcome.report.stages.iter().cloned());
+        report.fields.push(account);
+        let paint = match &self.texts.paint {
+            Some(text) => {
+                let built = self.build(text, share)?;
+                let values = pipeline::field_values(&built.field, &outcome.mesh.positions);
+                Some(painted(&values, self.args.paint_range, report))
+            }
+            None => {
+                let operands: Vec<_> =
+                    self.inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
+                pipeline::carry_colours(&outcome, &operands)
+            }
+        };
+        let target = Target {
+            path: target.path.clone(),
+            options: WriteOptions { unit: self.scale.unit, ..target.options },
+        };
+        solid::write(&outcome.mesh, paint.as_ref(), &target, self.session, report)
+    }
+
+    fn grid(&self, built: &Built, path: &Path, format: GridFormat, report: &mut RunReport) -> Result<(), Failure> {
+        let band = match self.args.band {
+            BandChoice::Full => None,
+            BandChoice::Within(length) => Some(length.resolve(self.scale)?),
+        };
+        let made = pipeline::field_grid(built, band, self.options, &self.session.progress);
+        let outcome = made.map_err(|e| self.failure(&e))?;
+        report.stages.extend(outcome.report.stages.iter().cloned());
+        report.distance = Some(outcome.report.clone());
+        let entry = sdf::write(path, &outcome, self.scale.unit, format, self.session, report)?;
+        report.output = Some(entry);
+        report.fields.push(FieldReport { operands: built.operands.clone(), ..FieldReport::default() });
+        Ok(())
+    }
+}
+
+/// A length of an expression in model units.
+fn length(value: f64, suffix: &str, scale: &Scale) -> Result<f64, String> {
+    if value == 0.0 {
+        return Ok(0.0);
+    }
+    let length: Length = format!("{}{suffix}", value.abs()).parse().map_err(|e| format!("{e}"))?;
+    let unmeasured = scale.diagonal <= 0.0 && matches!(length, Length::Percent(_));
+    if unmeasured || scale.voxel.is_none() && matches!(length, Length::Voxels(_)) {
+        return Err(format!("`{length}` cannot be measured: no file is given{}", match length {
+            Length::Voxels(_) => ", and no --voxel",
+            _ => "",
+        }));
+    }
+    length.resolve(scale).map(|length| length.copysign(value)).map_err(|e| e.to_string())
+}
+
+/// The colours of the values, and a line on what they stand for.
+fn painted(values: &[f64], range: Option<(f64, f64)>, report: &mut RunReport) -> Colours {
+    let finite = || values.iter().copied().filter(|value| value.is_finite());
+    let (low, high) =
+        range.unwrap_or_else(|| (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)));
+    report.warnings.push(format!(
+        "colours stand for values from {} (violet) to {} (yellow)",
+        words::number(low),
+        words::number(high)
+    ));
+    let size = if high == low { 1.0 } else { high - low };
+    let colour = |value: &f64| {
+        let [r, g, b] = ramp_colour((value - low) / size);
+        [r, g, b, 255]
+    };
+    Colours::Vertices(values.iter().map(colour).collect())
+}
+
+/// Says what was read, what became of it, and what came out.
+fn say(session: &Session, report: &RunReport, frames: usize, unit: Option<Unit>) {
+    let name = unit.map(|unit| unit.to_string());
+    let unit: UnitName<'_> = name.as_deref();
+    let mut rows: Vec<Row> = summary::input_rows(report);
+    if let Some(field) = report.fields.last() {
+        for operand in &field.operands {
+            let label = report.inputs.get(operand.operand).and_then(|input| input.name.clone()).unwrap_or_default();
+            let how = match operand.made {
+                "exact" => "its exact distance",
+                "repaired" => "repaired first, then its exact distance",
+                "robust" => "the smooth distance of a repair",
+                "levels" => "distance with sides level by level",
+                _ => "its values, interpolated",
+            };
+            rows.push(("done", format!("{label}: {how}")));
+        }
+    }
+    if let Some(distance) = &report.distance {
+        rows.push(("voxel", summary::voxel(distance.voxel, distance.dims, unit)));
+        let [low, high] = distance.range.map(|value| words::number(value.into()));
+        if let Some(output) = &report.output {
+            rows.push(("result", format!("{}: {low} to {high}; {}", output.path, words::bytes(output.bytes))));
+        }
+    }
+    if frames > 1 {
+        rows.push(("frames", words::count(frames)));
+    }
+    rows.extend(summary::result_rows(report, unit));
+    rows.push(summary::time(report));
+    if session.verbose {
+        rows.extend(summary::stages(report));
+    }
+    session.say(summary::table(&rows).trim_end());
+    for warning in &report.warnings {
+        session.say(&format!("note: {warning}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_get_numbers_of_one_length_before_the_extension() {
+        let at = |path: &str, number, frames| numbered(Path::new(path), number, frames).display().to_string();
+        assert_eq!(at("out/morph.ply", 3, 10), "out/morph_3.ply");
+        assert_eq!(at("morph.ply", 3, 11), "morph_03.ply");
+        assert_eq!(at("a.b.vti", 24, 101), "a.b_024.vti");
+        assert_eq!(at("plain", 0, 2), "plain_0");
+    }
+
+    #[test]
+    fn lengths_keep_their_sign_and_need_something_to_be_measured_by() {
+        let scale = Scale { unit: None, diagonal: 50.0, voxel: Some(0.25) };
+        assert_eq!(length(-2.0, "h", &scale), Ok(-0.5));
+        assert_eq!(length(0.0, "mm", &scale), Ok(0.0));
+        assert_eq!(length(2.0, "%", &scale), Ok(1.0));
+        assert!(length(1.0, "mm", &scale).unwrap_err().contains("unit"));
+        let nothing = Scale { unit: None, diagonal: 0.0, voxel: None };
+        assert!(length(1.0, "%", &nothing).is_err() && length(1.0, "h", &nothing).is_err());
+        assert_eq!(length(-3.0, "", &nothing), Ok(-3.0));
+    }
+}

@@ -1,0 +1,196 @@
+//! From an expression over meshes and grids to a surface, or to a field over a lattice.
+
+mod build;
+mod sources;
+
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
+use serde::Serialize;
+
+pub use build::{Built, FieldBuilder, Operand};
+use sources::Sources;
+
+use super::distance::DistanceOutcome;
+use super::morphology::volume;
+use super::{DistanceReport, Error, Options, Outcome, Report, TriangleSource, VoxelSize, prepare, refine, stages};
+use crate::field::filter::FilterError;
+use crate::field::{Extent, FillError, FillOptions, LevelError, Sample, Shared, fill, level};
+use crate::fit::{Facets, FitReport, fit};
+use crate::lattice::Lattice;
+use crate::ldi::Evidence;
+use crate::mesh::{Bounds, Plane};
+use crate::progress::Progress;
+use crate::sdf::exact::Band;
+
+/// A lattice that cuts a shape off grows by this part of the shape's extent.
+const MORE_ROOM: f64 = 0.3;
+/// So often; then the shape has no end.
+const MOST_TRIES: usize = 4;
+/// A gradient shorter than this says nothing about how far the level is.
+const FLAT: f64 = 0.05;
+
+/// What a field was made of, and what became of it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct FieldReport {
+    /// What was done to the operands before they became fields.
+    pub operands: Vec<OperandReport>,
+    /// Triangles of the result that lie on no triangle of an operand.
+    pub made: usize,
+    /// Volume of the result, cubic model units.
+    pub volume: f64,
+    /// Sharp edges and simplification; `None` without a fit.
+    pub fit: Option<FitReport>,
+}
+
+/// How an operand became a field.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OperandReport {
+    /// Number of the operand.
+    pub operand: usize,
+    /// What it is: `exact`, `repaired`, `robust`, `levels` or `grid`.
+    pub made: &'static str,
+}
+
+/// The surface where the field is zero.
+///
+/// # Errors
+/// See [`Error`]; [`Error::NothingEnclosed`] also for shapes without an end.
+pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> Result<(Outcome, FieldReport), Error> {
+    let field = &*built.field;
+    let mut stages = stages::Stages::new(progress);
+    stages.begin("field")?;
+    let mut extent = shape_extent(&built.field)?;
+    let mut tries = 0;
+    let (level, lattice) = loop {
+        let lattice = prepare::lattice(&extent, VoxelSize::Length(built.spacing(&extent, options.voxel)?))?;
+        let level = level(field, &lattice, options.max_memory, progress).map_err(no_level)?;
+        if !level.cut_off {
+            break (level, lattice);
+        }
+        tries += 1;
+        if tries == MOST_TRIES {
+            return Err(endless());
+        }
+        let room = MORE_ROOM * extent.size().max_element();
+        extent = Bounds { min: extent.min - room, max: extent.max + room };
+    };
+    if level.contour.mesh.triangles.is_empty() {
+        let reason = "the field is nowhere negative on the lattice: nothing is inside, or it is thinner than a voxel";
+        return Err(Error::NothingEnclosed { reason: reason.into() });
+    }
+    let mut contour = level.contour;
+    let sources = &built.sources;
+    contour.vertices.iter_mut().zip(&level.facets).zip(0u32..).for_each(|((vertex, facet), n)| {
+        let own = sources.mesh.triangles.len() as u32 + n;
+        vertex.triangle = facet.and_then(|facet| sources.number(facet)).unwrap_or(own);
+    });
+    let wanted = |p: DVec3| off(field.sample(p));
+    let facets = Facets::new(&sources.mesh, level.planes).with_wanted(&wanted);
+    stages.begin("collapse")?;
+    let mut surface = refine::merged(contour, &facets, &lattice, options, progress)?;
+    let mut fitted = None;
+    if let Some(options) = options.fit {
+        stages.begin("fit")?;
+        let options = crate::fit::FitOptions { keep: false, ..options };
+        let (fit, report) = fit(&surface, &facets, &Evidence::default(), lattice.h, &options, progress)?;
+        (surface, fitted) = (fit, Some(report));
+    }
+    let source = |t: u32| sources.origin(surface.facet(&facets, t));
+    let origins: Vec<TriangleSource> = (0..surface.mesh.triangles.len() as u32).into_par_iter().map(source).collect();
+    let made = origins.iter().filter(|source| **source == TriangleSource::Closed).count();
+    let report = Report {
+        voxel: lattice.h,
+        dims: lattice.dims.to_array(),
+        fit: fitted.clone(),
+        closed_triangles: made,
+        stages: stages.finish(),
+        ..Report::default()
+    };
+    let account =
+        FieldReport { operands: built.operands.clone(), made, volume: volume(&surface.mesh), fit: fitted };
+    Ok((Outcome { mesh: surface.mesh, sources: origins, lattice, report }, account))
+}
+
+/// How far a point is from the level, model units.
+fn off(sample: Sample) -> f64 {
+    let steep = sample.gradient.length();
+    sample.value.abs() / if steep > FLAT { steep } else { 1.0 }
+}
+
+/// The field over a lattice around the shape, or around the operands where the field is no shape; values up to `band`
+/// (model units) from zero, or all.
+///
+/// # Errors
+/// See [`Error`].
+pub fn field_grid(
+    built: &Built,
+    band: Option<f64>,
+    options: &Options,
+    progress: &Progress,
+) -> Result<DistanceOutcome, Error> {
+    let mut stages = stages::Stages::new(progress);
+    stages.begin("field")?;
+    let shape = built.field.extent().or(Extent::of(built.around));
+    let extent = shape.bounds().or(built.around).ok_or_else(endless)?;
+    let h = built.spacing(&extent, options.voxel)?;
+    let mut lattice = prepare::lattice(&extent, VoxelSize::Length(h))?;
+    let room = (band.unwrap_or(0.0) / h).ceil();
+    lattice.origin -= room * h;
+    lattice.dims += 2 * IVec3::splat(room as i32);
+    let wanted = FillOptions { band, max_memory: options.max_memory };
+    let mut grid = fill(&*built.field, &lattice, &wanted, progress).map_err(not_filled)?;
+    // The outcome holds distances in h.
+    let per_h = (1.0 / h) as f32;
+    grid.values.par_iter_mut().flatten().for_each(|value| *value *= per_h);
+    (grid.inside, grid.outside) = (grid.inside * per_h, grid.outside * per_h);
+    let report = DistanceReport { stages: stages.finish(), ..DistanceReport::default() };
+    let band = band.map_or(Band::Full, |band| Band::Within(band / h));
+    Ok(DistanceOutcome::described(grid, lattice, band, report))
+}
+
+/// The values of the field at points, model units: to paint a surface with.
+pub fn field_values(field: &Shared, points: &[DVec3]) -> Vec<f64> {
+    let packet = |points: &[DVec3]| {
+        let mut values = vec![0.0; points.len()];
+        field.values(points, &mut values);
+        values
+    };
+    points.par_chunks(64).flat_map_iter(packet).collect()
+}
+
+/// The box that holds the shape.
+fn shape_extent(field: &Shared) -> Result<Bounds, Error> {
+    match field.extent() {
+        Extent::Within(bounds) => Ok(bounds),
+        Extent::Unbounded => Err(endless()),
+        Extent::Empty => {
+            Err(Error::NothingEnclosed { reason: "the field is nowhere negative: nothing is inside".into() })
+        }
+    }
+}
+
+fn endless() -> Error {
+    let reason = "the shape has no end: intersect it with one that has (`... & box(...)`)";
+    Error::NothingEnclosed { reason: reason.into() }
+}
+
+fn not_filled(error: FillError) -> Error {
+    match error {
+        FillError::Stopped(stopped) => stopped.into(),
+        FillError::Memory { needed, allowed } => Error::Memory { needed, allowed, voxel_that_fits: None },
+    }
+}
+
+fn no_level(error: LevelError) -> Error {
+    match error {
+        LevelError::Fill(error) => not_filled(error),
+        LevelError::Stopped(stopped) => stopped.into(),
+    }
+}
+
+impl From<FilterError> for Error {
+    fn from(error: FilterError) -> Self {
+        Self::Filter(error)
+    }
+}
+
