@@ -6,6 +6,8 @@ mod common;
 mod characteristics;
 #[path = "exact/lattices.rs"]
 mod lattices;
+#[path = "exact/levels.rs"]
+mod levels;
 #[path = "exact/points.rs"]
 mod points;
 #[path = "exact/prism.rs"]

@@ -81,6 +81,8 @@ pub enum SignChoice {
     Pseudonormal,
     /// The generalised winding number
     Winding,
+    /// The outlines of the surface in planes along z, their gaps closed
+    Levels,
 }
 
 impl From<SignChoice> for DistanceSign {
@@ -89,6 +91,7 @@ impl From<SignChoice> for DistanceSign {
             SignChoice::Votes => Self::Votes,
             SignChoice::Pseudonormal => Self::Pseudonormal,
             SignChoice::Winding => Self::Winding,
+            SignChoice::Levels => Self::Levels,
         }
     }
 }

@@ -100,7 +100,9 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
         closed_only(args, validity)?;
     }
     let sign = match args.sign {
-        Some(SignChoice::Pseudonormal | SignChoice::Winding) if method == DistanceMethod::Robust => {
+        Some(SignChoice::Pseudonormal | SignChoice::Winding | SignChoice::Levels)
+            if method == DistanceMethod::Robust =>
+        {
             return Err(Failure::usage("--method robust goes by the votes; --sign cannot change that")
                 .hint("--method exact takes any --sign"));
         }
@@ -244,6 +246,7 @@ fn say(
         DistanceSign::Pseudonormal => "sides by the normal at the nearest point",
         DistanceSign::Votes => "sides by the votes of the rays",
         DistanceSign::Winding => "sides by the winding number",
+        DistanceSign::Levels => "sides by outlines in planes along z",
     };
     let reach = match distance.band {
         Some(band) => format!("within {} of the surface, ± that beyond", words::length(band, unit)),

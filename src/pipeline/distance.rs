@@ -13,7 +13,7 @@ use crate::mesh::TriMesh;
 use crate::orient::{OrientMode, OrientReport};
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::{self, Band, ExactError, ExactOptions, Sign};
-use crate::sdf::{self, RobustOptions, characteristics};
+use crate::sdf::{self, Levels, LevelsError, RobustOptions, characteristics, levels_memory};
 use crate::vote::{Jury, VoteReport, VoteRule, Winding, doubts, vote_near_surface};
 
 /// Bytes per stored voxel of the marched field: the field, what is done, and the front.
@@ -49,6 +49,8 @@ pub enum DistanceSign {
     Votes,
     /// The generalised winding number, after cleaning and orientation.
     Winding,
+    /// The outlines of the surface in the lattice's planes along z, gaps closed, after cleaning and orientation.
+    Levels,
 }
 
 /// Options of [`distance`].
@@ -211,8 +213,12 @@ fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOption
         memory += votes.memory as f64;
         seconds += votes.seconds;
     }
-    if (options.method, options.sign) == (DistanceMethod::Exact, DistanceSign::Winding) {
-        seconds += WINDING_SECONDS * exact.voxels as f64;
+    match (options.method, options.sign) {
+        (DistanceMethod::Exact, DistanceSign::Winding) => seconds += WINDING_SECONDS * exact.voxels as f64,
+        (DistanceMethod::Exact, DistanceSign::Levels) => {
+            memory += levels_memory(lattice, input.triangles.len()) as f64;
+        }
+        _ => {}
     }
     if options.method == DistanceMethod::Robust {
         memory += MARCHED_BYTES * exact.voxels as f64;
@@ -233,6 +239,13 @@ fn refusal(error: ExactError) -> Error {
         ExactError::Stopped(stopped) => stopped.into(),
         ExactError::Empty => Error::Empty { operand: 0 },
         other => Error::VoxelSize { reason: other.to_string() },
+    }
+}
+
+fn no_levels(error: LevelsError) -> Error {
+    match error {
+        LevelsError::Stopped(stopped) => stopped.into(),
+        LevelsError::Memory { .. } => Error::VoxelSize { reason: error.to_string() },
     }
 }
 
@@ -280,10 +293,20 @@ impl Run<'_> {
         report.orient = soup.reports.first().cloned();
         let expression = Expression::Operand(0);
         let winding = Winding::new(&soup.mesh, &soup.operands, lattice, progress);
-        if (self.options.method, self.options.sign) == (DistanceMethod::Exact, DistanceSign::Winding) {
-            drop(layers);
-            stages.begin("distance")?;
-            return self.exact(&soup.mesh, Sign::Winding(&winding, &expression));
+        match (self.options.method, self.options.sign) {
+            (DistanceMethod::Exact, DistanceSign::Winding) => {
+                drop(layers);
+                stages.begin("distance")?;
+                return self.exact(&soup.mesh, Sign::Winding(&winding, &expression));
+            }
+            (DistanceMethod::Exact, DistanceSign::Levels) => {
+                drop(layers);
+                stages.begin("levels")?;
+                let levels = Levels::of(&soup.mesh, lattice, progress).map_err(no_levels)?;
+                stages.begin("distance")?;
+                return self.exact(&soup.mesh, Sign::Levels(&levels));
+            }
+            _ => {}
         }
         let hits = solid::count(&layers);
         stages.begin("spans")?;

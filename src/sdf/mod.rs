@@ -2,12 +2,13 @@
 //!
 //! The *robust* field (Bærentzen §3.3–3.4): the voted volume, estimates from the LDI points,
 //! smoothing, gradient correction, and fast marching to a wanted band. The *exact* field: the distance to the
-//! nearest triangle, at any point or over a lattice; over a lattice also by scan conversion, one polyhedron per feature.
+//! nearest triangle, at any point or over a lattice; over a lattice also by scan conversion, one polyhedron per feature. [`Levels`] are sides alone, plane by plane.
 
 pub mod characteristics;
 mod correct;
 mod estimate;
 pub mod exact;
+mod levels;
 mod march;
 mod neighbours;
 pub mod prism;
@@ -15,6 +16,7 @@ mod smooth;
 
 pub use correct::correct;
 pub use estimate::estimate;
+pub use levels::{Levels, LevelsError, levels_memory};
 pub use march::march;
 pub use smooth::{FAR, smooth};
 

@@ -95,13 +95,16 @@ fn soups_go_by_the_votes_unless_told_otherwise() {
     // 24³ voxels of the cube, give or take its border.
     assert!((22 * 22 * 22..26 * 26 * 26).contains(&count), "{count}");
     assert_eq!(inside("--sign winding").0, count);
+    let (by_levels, json) = inside("--sign levels");
+    assert_eq!((by_levels, &json["options"]["sign"]), (count, &"levels".into()));
     let (robust, json) = inside("--method robust");
     assert_eq!((robust, &json["options"]["sign"]), (count, &"votes".into()));
     let note = run_in(&folder, "sdf testdata/open_cube.off -o OUT/c.nrrd --resolution 24 --sign pseudonormal").exits(0);
     assert!(note.stderr.contains("note: the surface is no valid solid"), "{}", note.stderr);
-    run_in(&folder, "sdf testdata/open_cube.off -o OUT/c.nrrd --method robust --sign winding")
-        .exits(2)
-        .says(&["hint:"]);
+    for sign in ["winding", "levels"] {
+        let line = format!("sdf testdata/open_cube.off -o OUT/c.nrrd --method robust --sign {sign}");
+        run_in(&folder, &line).exits(2).says(&["hint:"]);
+    }
 }
 
 #[test]

@@ -28,6 +28,7 @@ use crate::lattice::{BRICK, Bricks, Grid, Lattice, brick_of};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh};
 use crate::progress::{Progress, Stopped};
+use crate::sdf::Levels;
 use crate::vote::{Votes, Winding};
 pub(in crate::sdf) use descend::Filled;
 pub(in crate::sdf) use feature::{Edge, Face, Features, Measured, Vertex};
@@ -54,6 +55,8 @@ pub enum Sign<'a> {
     Votes(&'a Grid<Votes>),
     /// The winding numbers of the operands of a soup on the same lattice, and what is made of them.
     Winding(&'a Winding<'a>, &'a Expression),
+    /// The outlines of an oriented surface in the planes of the same lattice.
+    Levels(&'a Levels),
 }
 
 /// Options of [`exact`].

@@ -1,4 +1,4 @@
-//! On which side voxels lie: beyond the band, in bricks that are not stored, and by votes and winding numbers.
+//! On which side voxels lie: beyond the band, in bricks that are not stored, and by votes, winding numbers and levels.
 
 use std::sync::Arc;
 
@@ -10,6 +10,7 @@ use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh};
 use crate::progress::{Progress, Stopped};
+use crate::sdf::Levels;
 use crate::vote::{Votes, Winding};
 
 type Values = [f32; BRICK_VOXELS];
@@ -41,6 +42,19 @@ pub(super) fn settle(
                     return Ok(None);
                 }
                 Ok(Some(slot == Slot::Inside))
+            })?;
+        }
+        Sign::Levels(levels) => {
+            let (bricks, band) = (raw.grid.bricks.clone(), raw.band);
+            let all = raw.grid.values.par_iter_mut().zip(bricks.active());
+            all.for_each(|(values, &brick)| by_levels(values, levels, brick, band));
+            settle_rest(raw, |brick, values| {
+                let rows = levels.brick(brick);
+                let same = rows.iter().all(|&row| row == rows[0]) && matches!(rows[0], 0 | u8::MAX);
+                if !same {
+                    by_levels(values, levels, brick, band);
+                }
+                Ok(same.then_some(rows[0] != 0))
             })?;
         }
         Sign::Winding(winding, expression) => {
@@ -168,6 +182,15 @@ fn by_votes(values: &mut Values, votes: &Grid<Votes>, brick: IVec3, band: f32) {
             values.iter_mut().zip(votes).for_each(|(value, votes)| set(value, votes.is_inside));
         }
         class => values.iter_mut().for_each(|value| set(value, class == Slot::Inside)),
+    }
+}
+
+fn by_levels(values: &mut Values, levels: &Levels, brick: IVec3, band: f32) {
+    for (row, values) in levels.brick(brick).into_iter().zip(values.chunks_mut(BRICK as usize)) {
+        for (n, value) in values.iter_mut().enumerate() {
+            let distance = value.abs().min(band);
+            *value = if row >> n & 1 == 1 { -distance } else { distance };
+        }
     }
 }
 
