@@ -278,9 +278,9 @@ pub struct FieldArgs {
     /// Size of a voxel, instead of --resolution
     #[arg(long, value_name = "LEN")]
     pub voxel: Option<Length>,
-    /// How far from zero a lattice has the values, or `full` for all of it
-    #[arg(long, value_name = "LEN|full", default_value = "4h")]
-    pub band: BandChoice,
+    /// How far from zero a lattice has the values, or `full` for all of them [default: 4h, and full for what is no shape]
+    #[arg(long, value_name = "LEN|full")]
+    pub band: Option<BandChoice>,
     /// Write this many results, in which `t` goes from 0 to 1; their numbers are put into the name
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100_000))]
     pub frames: Option<u32>,

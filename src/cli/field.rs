@@ -22,6 +22,9 @@ use crate::mesh::Bounds;
 use crate::pipeline::{self, Built, FieldBuilder, FieldReport, Operand, Options, VoxelSize};
 use crate::picture::ramp_colour;
 
+/// Values in a lattice reach so far from the surface, voxels, unless it is said otherwise.
+const USUAL_BAND: f64 = 4.0;
+
 /// Makes what the expression says of the named files.
 pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let files = named_files(&args.operands)?;
@@ -199,7 +202,7 @@ fn resolved(args: &FieldArgs, unit: Option<Unit>, options: &Options, scale: &Sca
         "frames": args.frames,
         "voxel": scale.voxel,
         "resolution": args.voxel.is_none().then_some(args.resolution),
-        "band": args.band.to_string(),
+        "band": args.band.map(|band| band.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
         "collapse": options.collapse,
@@ -277,8 +280,10 @@ impl Run<'_> {
 
     fn grid(&self, built: &Built, path: &Path, format: GridFormat, report: &mut RunReport) -> Result<(), Failure> {
         let band = match self.args.band {
-            BandChoice::Full => None,
-            BandChoice::Within(length) => Some(length.resolve(self.scale)?),
+            Some(BandChoice::Full) => None,
+            Some(BandChoice::Within(length)) => Some(length.resolve(self.scale)?),
+            None if self.texts.field.1.is_measure() => None,
+            None => self.scale.voxel.map(|h| USUAL_BAND * h),
         };
         let made = pipeline::field_grid(built, band, self.options, &self.session.progress);
         let outcome = made.map_err(|e| self.failure(&e))?;

@@ -1,5 +1,7 @@
 //! `sdf IN -o OUT`: the signed distance to a mesh over a lattice.
 
+use std::path::Path;
+
 use clap::ValueEnum;
 use serde_json::json;
 
@@ -9,7 +11,7 @@ use super::choices::SignChoice;
 use super::exit::{Exit, Failure};
 use super::input::{self, Input, is_stream};
 use super::length::{BandChoice, Scale};
-use super::report::{PlanEntry, RunReport};
+use super::report::{OutputEntry, PlanEntry, RunReport};
 use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
@@ -42,13 +44,7 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
     let outcome = pipeline::distance(&input.loaded.mesh, &options, &session.progress)
         .map_err(|e| failure(&e, input, unit, args))?;
     report.stages.extend(outcome.report.stages.iter().cloned());
-    let plane = |z: usize, values: &mut Vec<f32>| outcome.plane(z, values);
-    let samples = samples(&outcome, unit, &plane);
-    let entry = report.timed("write and verify", |_| {
-        session.progress.stage("write")?;
-        output::write_grid(path, &samples, format, session)
-    })?;
-    report.output = Some(entry);
+    report.output = Some(write(path, &outcome, unit, format, session, report)?);
     let fallback = outcome.report.made_by.as_ref().and_then(|made_by| made_by.fallback.as_ref());
     report.warnings.extend(fallback.map(|reason| format!("the main processor drew the slices: {reason}")));
     report.distance = Some(outcome.report.clone());
@@ -229,6 +225,23 @@ fn samples<'a>(
         band: outcome.report.band,
         plane,
     }
+}
+
+/// Writes a field.
+pub(super) fn write(
+    path: &Path,
+    outcome: &DistanceOutcome,
+    unit: Option<Unit>,
+    format: GridFormat,
+    session: &Session,
+    report: &mut RunReport,
+) -> Result<OutputEntry, Failure> {
+    let plane = |z: usize, values: &mut Vec<f32>| outcome.plane(z, values);
+    let samples = samples(outcome, unit, &plane);
+    report.timed("write and verify", |_| {
+        session.progress.stage("write")?;
+        output::write_grid(path, &samples, format, session)
+    })
 }
 
 /// Says what was read, how the field was made, and what came out.

@@ -13,7 +13,7 @@ use crate::progress::{Progress, Stopped};
 /// Bricks along a side of the blocks with which the search begins.
 const FIRST: i32 = 8;
 /// Voxels along a side of the smallest blocks that are left out.
-const LEAST: i32 = 4;
+const LEAST: i32 = 2;
 /// Bytes of a stored brick: its values, and as much while they are put in order.
 const BRICK_BYTES: u64 = 2 * 4 * BRICK_VOXELS as u64;
 
@@ -132,9 +132,9 @@ impl Scope<'_> {
 
     fn brick(&self, brick: IVec3) -> [f32; BRICK_VOXELS] {
         let mut values = [0.0; BRICK_VOXELS];
-        let (mut points, mut found) = (Vec::with_capacity(64), [0.0; (LEAST * LEAST * LEAST) as usize]);
-        for block in 0..8 {
-            let first = BRICK * brick + IVec3::new(block & 1, block >> 1 & 1, block >> 2) * LEAST;
+        let (mut points, mut found) = (Vec::with_capacity(8), [0.0; (LEAST * LEAST * LEAST) as usize]);
+        for block in 0..64 {
+            let first = BRICK * brick + IVec3::new(block & 3, block >> 2 & 3, block >> 4) * LEAST;
             let range = self.range(first, LEAST);
             let far =
                 if range.max < -self.band { Some(-self.band) } else { (range.min > self.band).then_some(self.band) };
@@ -152,10 +152,9 @@ impl Scope<'_> {
     }
 }
 
-/// The voxels of one of the smallest blocks, in packets of eight that make a cube.
+/// The voxels of one of the smallest blocks.
 fn voxels(first: IVec3) -> impl Iterator<Item = IVec3> {
-    let corner = |n: i32| IVec3::new(n & 1, n >> 1 & 1, n >> 2 & 1);
-    (0..LEAST * LEAST * LEAST).map(move |n| first + corner(n >> 3) * (LEAST / 2) + corner(n))
+    (0..LEAST * LEAST * LEAST).map(move |n| first + IVec3::new(n & 1, n >> 1 & 1, n >> 2))
 }
 
 impl Found {

@@ -10,10 +10,11 @@ use crate::lattice::Lattice;
 use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
 
-/// Values are found this far from the zero level, h: beyond the corners of its cells.
-const BAND: f64 = 1.8;
+/// Values are found this far from the zero level, h: beyond the ends of the lattice edges that it crosses, where the field is
+/// a distance.
+const BAND: f64 = 1.2;
 /// A point whose value is nearer to zero than this, h, is on the level.
-const AT_LEVEL: f64 = 1e-7;
+const AT_LEVEL: f64 = 1e-6;
 /// Steps towards one point of the level.
 const MOST_STEPS: usize = 60;
 /// Tangent planes found in one packet.
@@ -21,7 +22,7 @@ const PACKET: usize = 64;
 /// A gradient shorter than this is none.
 const FLAT: f64 = 1e-6;
 /// A vertex lies on a triangle of a source if it is not farther from it than this, h.
-const ON_SOURCE: f64 = 1e-6;
+const ON_SOURCE: f64 = 1e-5;
 
 /// The zero level of a field.
 pub struct Level {
@@ -46,7 +47,7 @@ pub enum LevelError {
     Stopped(#[from] Stopped),
 }
 
-/// The surface where `field` is zero, on `lattice`. Vertices lie on it to 1e-7 h along their lattice edges. It is empty where
+/// The surface where `field` is zero, on `lattice`. Vertices lie on it to 1e-6 h along their lattice edges. It is empty where
 /// no voxel is negative.
 ///
 /// # Errors
@@ -60,16 +61,15 @@ pub fn level(
     let options = FillOptions { band: Some(BAND * lattice.h), max_memory };
     let mut grid = fill(field, lattice, &options, progress)?;
     let cut_off = touches_border(&grid, lattice.dims);
+    // The contour takes distances in h.
+    grid.values.par_iter_mut().flatten().for_each(|value| *value /= lattice.h as f32);
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
     let crossing = |edge: Edge| {
         let ends = [edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]];
-        // Where values were rounded to single precision, the field itself says it again.
-        let values = ends.map(|voxel| field.value(model(voxel)));
+        let values = ends.map(|voxel| f64::from(grid.get(voxel)) * lattice.h);
         let t = passage(field, ends.map(model), values, AT_LEVEL * lattice.h)?;
         Some(Crossing { t, triangle: NO_TRIANGLE })
     };
-    // The contour takes distances in h.
-    grid.values.par_iter_mut().flatten().for_each(|value| *value /= lattice.h as f32);
     let mut contour = contour(lattice, &grid, &crossing, &ContourOptions::default(), progress)?;
     drop(grid);
     let positions = &contour.mesh.positions;

@@ -1,7 +1,7 @@
 //! Nearest points for many neighbouring points in one go: the box tree is walked once for eight of them
 //! (Sanchez et al. 2015 §3, "packet sampling").
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec4};
 use obvhs::bvh2::node::Bvh2Node;
 
 use super::Closest;
@@ -19,7 +19,10 @@ const SQUARE: f32 = 1e-6;
 /// Growth of the first guess over the distance to a point of the surface, so that rounding excludes nothing.
 const GUESS: f64 = 1.0 + 1e-9;
 
-type Lane = [f32; LANES];
+/// A number for each of eight points, in two quads: written out as such, because loops over eight stay scalar.
+type Lane = [Vec4; 2];
+
+const ZERO: Lane = [Vec4::ZERO; 2];
 
 /// Eight points in the space of the boxes.
 struct Eight {
@@ -39,18 +42,17 @@ impl Eight {
     /// Lower bounds of the squared distances to a box.
     #[inline(always)]
     fn squares(&self, node: &Bvh2Node) -> Lane {
-        let (min, max) = (glam::Vec3::from(node.aabb().min).to_array(), glam::Vec3::from(node.aabb().max).to_array());
-        let mut sum = [0.0; LANES];
-        for axis in 0..3 {
-            for k in 0..LANES {
-                let below = min[axis] - self.more[axis][k];
-                let above = self.less[axis][k] - max[axis];
-                let off = if below > above { below } else { above };
-                let off = if off > 0.0 { off } else { 0.0 };
-                sum[k] += off * off;
-            }
-        }
-        sum.map(|square| square * (1.0 - SQUARE))
+        let (min, max) = (node.aabb().min, node.aabb().max);
+        let half = |half: usize| {
+            let off = |axis: usize, min: f32, max: f32| {
+                let below = Vec4::splat(min) - self.more[axis][half];
+                let above = self.less[axis][half] - Vec4::splat(max);
+                let off = below.max(above).max(Vec4::ZERO);
+                off * off
+            };
+            (off(0, min.x, max.x) + off(1, min.y, max.y) + off(2, min.z, max.z)) * (1.0 - SQUARE)
+        };
+        [half(0), half(1)]
     }
 
     /// Squared distances to a triangle, off by rounding: the least of those to its sides and, over it, to its plane.
@@ -58,52 +60,47 @@ impl Eight {
     fn to_triangle(&self, corners: &[Vec3; 3]) -> Lane {
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         let square = normal.length_squared();
-        let mut least = [f32::INFINITY; LANES];
-        let mut over = [square > 0.0; LANES];
-        for k in 0..3 {
-            let (from, side) = (corners[k], corners[(k + 1) % 3] - corners[k]);
-            let inner = normal.cross(side);
-            let length = side.length_squared();
-            let part = if length > 0.0 { 1.0 / length } else { 0.0 };
-            for lane in 0..LANES {
-                let [x, y, z] = [self.at[0][lane] - from.x, self.at[1][lane] - from.y, self.at[2][lane] - from.z];
-                let along = (x * side.x + y * side.y + z * side.z) * part;
-                let along = if along > 0.0 { along } else { 0.0 };
-                let along = if along < 1.0 { along } else { 1.0 };
-                let [dx, dy, dz] = [x - side.x * along, y - side.y * along, z - side.z * along];
-                let off = dx * dx + dy * dy + dz * dz;
-                least[lane] = if off < least[lane] { off } else { least[lane] };
-                over[lane] &= x * inner.x + y * inner.y + z * inner.z >= 0.0;
-            }
-        }
         let part = if square > 0.0 { 1.0 / square } else { 0.0 };
-        for lane in 0..LANES {
-            let [x, y, z] =
-                [self.at[0][lane] - corners[0].x, self.at[1][lane] - corners[0].y, self.at[2][lane] - corners[0].z];
-            let level = x * normal.x + y * normal.y + z * normal.z;
-            let plane = level * level * part;
-            let nearer = over[lane] & (plane < least[lane]);
-            least[lane] = if nearer { plane } else { least[lane] };
+        [self.half_to_triangle(0, corners, normal, part), self.half_to_triangle(1, corners, normal, part)]
+    }
+
+    /// The same for four of the points; `part` is 1 over the square of `normal`, or 0 where there is none.
+    #[inline(always)]
+    fn half_to_triangle(&self, half: usize, corners: &[Vec3; 3], normal: Vec3, part: f32) -> Vec4 {
+        let from = |corner: Vec3| [0, 1, 2].map(|axis| self.at[axis][half] - Vec4::splat(corner[axis]));
+        let dot = |[x, y, z]: [Vec4; 3], v: Vec3| x * v.x + y * v.y + z * v.z;
+        let level = dot(from(corners[0]), normal);
+        let plane = level * level * part;
+        let mut sides = Vec4::INFINITY;
+        let mut inner = Vec4::splat(if part > 0.0 { f32::INFINITY } else { -1.0 });
+        for k in 0..3 {
+            let (own, side) = (from(corners[k]), corners[(k + 1) % 3] - corners[k]);
+            let length = side.length_squared();
+            let along = dot(own, side) * if length > 0.0 { 1.0 / length } else { 0.0 };
+            let along = along.max(Vec4::ZERO).min(Vec4::ONE);
+            let [x, y, z] = [own[0] - along * side.x, own[1] - along * side.y, own[2] - along * side.z];
+            sides = sides.min(x * x + y * y + z * z);
+            inner = inner.min(dot(own, normal.cross(side)));
         }
-        least
+        Vec4::select(inner.cmpge(Vec4::ZERO), plane.min(sides), sides)
     }
 
     /// Notes the square of a lane's best distance in the space of the boxes.
     #[inline(always)]
     fn note(&mut self, lane: usize, square: f64) {
         let square = square as f32 * (1.0 + SQUARE);
-        self.best[lane] = square;
-        self.doubted[lane] = (square.sqrt() + self.doubt[lane]).powi(2);
+        let (half, lane) = (lane / 4, lane % 4);
+        self.best[half][lane] = square;
+        self.doubted[half][lane] = (square.sqrt() + self.doubt[half][lane]).powi(2);
     }
 
     /// The least of the squares that are of interest.
     #[inline(always)]
     fn least(&self, squares: &Lane) -> Option<f32> {
-        let mut least = f32::INFINITY;
-        for (&square, &best) in squares.iter().zip(&self.best) {
-            let counts = if square <= best { square } else { f32::INFINITY };
-            least = if counts < least { counts } else { least };
-        }
+        let counting = |half: usize| {
+            Vec4::select(squares[half].cmple(self.best[half]), squares[half], Vec4::INFINITY)
+        };
+        let least = counting(0).min(counting(1)).min_element();
         (least < f32::INFINITY).then_some(least)
     }
 }
@@ -139,7 +136,7 @@ impl<S: Shape> ClosestTree<S> {
         walk.stack.clear();
         walk.stack.push((0.0, 0));
         while let Some((least, index)) = walk.stack.pop() {
-            if eight.best.iter().all(|&best| least > best) {
+            if least > eight.best[0].max(eight.best[1]).max_element() {
                 continue;
             }
             let node = &self.tree.nodes[index as usize];
@@ -156,17 +153,18 @@ impl<S: Shape> ClosestTree<S> {
     }
 
     fn eight(&self, targets: &[DVec3; LANES], best: &[Best; LANES]) -> Eight {
-        let (none, zero) = ([[0.0; LANES]; 3], [0.0; LANES]);
-        let mut eight = Eight { more: none, less: none, at: none, best: zero, doubted: zero, doubt: zero };
+        let none = [ZERO; 3];
+        let mut eight = Eight { more: none, less: none, at: none, best: ZERO, doubted: ZERO, doubt: ZERO };
         for (k, target) in targets.iter().enumerate() {
             let p = ((*target - self.centre) * self.shrink).as_vec3();
             let margin = ROUNDING * p.abs().max_element().max(1.0);
+            let (half, lane) = (k / 4, k % 4);
             for axis in 0..3 {
-                eight.more[axis][k] = p[axis] + margin;
-                eight.less[axis][k] = p[axis] - margin;
-                eight.at[axis][k] = p[axis];
+                eight.more[axis][half][lane] = p[axis] + margin;
+                eight.less[axis][half][lane] = p[axis] - margin;
+                eight.at[axis][half][lane] = p[axis];
             }
-            eight.doubt[k] = DOUBT * margin;
+            eight.doubt[half][lane] = DOUBT * margin;
             eight.note(k, self.in_boxes(best[k].square));
         }
         eight
@@ -198,12 +196,14 @@ impl<S: Shape> ClosestTree<S> {
     fn look(&self, node: &Bvh2Node, targets: &[DVec3; LANES], best: &mut [Best; LANES], eight: &mut Eight) {
         for place in node.first_index as usize..(node.first_index + node.prim_count) as usize {
             let squares = eight.to_triangle(&self.singles[place]);
+            let near = |half: usize| squares[half].cmple(eight.doubted[half]).bitmask();
+            let mut near = near(0) | near(1) << 4;
             let id = self.tree.primitive_indices[place];
-            for k in 0..LANES {
-                if squares[k] <= eight.doubted[k] {
-                    best[k].offer(id, self.shapes[id as usize].nearest(targets[k]), targets[k]);
-                    eight.note(k, self.in_boxes(best[k].square));
-                }
+            while near != 0 {
+                let k = near.trailing_zeros() as usize;
+                near &= near - 1;
+                best[k].offer(id, self.shapes[id as usize].nearest(targets[k]), targets[k]);
+                eight.note(k, self.in_boxes(best[k].square));
             }
         }
     }

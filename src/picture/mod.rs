@@ -9,6 +9,7 @@ mod image;
 mod light;
 mod lines;
 mod occlusion;
+mod ramp;
 mod scene;
 mod sight;
 
@@ -16,6 +17,7 @@ use rayon::prelude::*;
 
 pub use camera::View;
 pub use image::Image;
+pub use ramp::ramp_colour;
 
 use crate::io::Colours;
 use crate::mesh::TriMesh;

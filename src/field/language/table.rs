@@ -326,8 +326,10 @@ const _: () = {
 /// From here on, whole numbers are not exact in `f64`.
 const MOST_EXACT: u64 = 1 << 53;
 const SHARE: Kind = Kind::Number(0.0, 1.0);
+/// At 0 and 1 Perlin's gain is a step.
+const GAIN: Kind = Kind::Number(0.05, 0.95);
 const RADIUS: &[Parameter] = &[required("radius", Kind::Length)];
-const BLOB: &[Parameter] = &[required("radius", Kind::Length), default("gain", SHARE, Preset::Quantity(0.5, ""))];
+const BLOB: &[Parameter] = &[required("radius", Kind::Length), default("gain", GAIN, Preset::Quantity(0.5, ""))];
 const SAMPLES: Parameter = default("samples", Kind::Count(1, 65_536), Preset::Quantity(64.0, ""));
 const ALONG_Z: Parameter = default("axis", Kind::Axis, Preset::Axis(Axis::Z));
 const CENTRE: [Parameter; 3] = [coordinate("x"), coordinate("y"), coordinate("z")];

@@ -191,6 +191,12 @@ impl Node {
 }
 
 impl<A> Node<A> {
+    /// Whether its values are no distances to a shape, but measures of something else.
+    pub fn is_measure(&self) -> bool {
+        let measures = [Function::Material, Function::Compare];
+        matches!(&self.kind, NodeKind::Call(call) if measures.contains(&call.function))
+    }
+
     /// The numbers of the operands that it uses.
     pub fn operands(&self) -> BTreeSet<usize> {
         match &self.kind {

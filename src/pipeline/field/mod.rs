@@ -8,7 +8,6 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 pub use build::{Built, FieldBuilder, Operand};
-use sources::Sources;
 
 use super::distance::DistanceOutcome;
 use super::morphology::volume;
@@ -16,9 +15,8 @@ use super::{DistanceReport, Error, Options, Outcome, Report, TriangleSource, Vox
 use crate::field::filter::FilterError;
 use crate::field::{Extent, FillError, FillOptions, LevelError, Sample, Shared, fill, level};
 use crate::fit::{Facets, FitReport, fit};
-use crate::lattice::Lattice;
 use crate::ldi::Evidence;
-use crate::mesh::{Bounds, Plane};
+use crate::mesh::Bounds;
 use crate::progress::Progress;
 use crate::sdf::exact::Band;
 
