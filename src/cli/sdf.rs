@@ -14,7 +14,8 @@ use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
 use super::{limits, output};
-use crate::io::{DistanceSamples, GridFormat, Unit};
+use crate::io::{DistanceSamples, GridFormat, SampleBlocks, Unit};
+use crate::lattice::Slot;
 use crate::mesh::Validity;
 use crate::pipeline::{
     self, DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, VoxelSize,
@@ -36,14 +37,20 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
     report.options = resolved(args, unit, format, &options);
     report.inputs[0].validity = Some(validity.clone());
     let Some((path, format)) = args.output.as_deref().zip(format).filter(|_| !args.plan) else {
-        return plan(input, &options, unit, args, report);
+        return plan(input, &options, unit, format, args, report);
     };
     report.warnings.extend(doubts(&options, &validity, format));
     let outcome = pipeline::distance(&input.loaded.mesh, &options, &session.progress)
         .map_err(|e| failure(&e, input, unit, args))?;
     report.stages.extend(outcome.report.stages.iter().cloned());
     let plane = |z: usize, values: &mut Vec<f32>| outcome.plane(z, values);
-    let samples = samples(&outcome, unit, &plane);
+    let (bricks, h) = (&outcome.field.bricks, outcome.lattice.h);
+    let blocks = SampleBlocks {
+        stored: bricks.active(),
+        values: &|n| outcome.field.values[n].map(|value| (f64::from(value) * h) as f32),
+        inside: &|brick| bricks.slot(brick) == Slot::Inside,
+    };
+    let samples = samples(&outcome, unit, &plane, &blocks);
     let entry = report.timed("write and verify", |_| {
         session.progress.stage("write")?;
         output::write_grid(path, &samples, format, session)
@@ -72,7 +79,7 @@ fn format(args: &SdfArgs) -> Result<Option<GridFormat>, Failure> {
         }
         (None, None) => {
             return Err(Failure::usage(format!("the name {} does not tell its format", path.display()))
-                .hint("end it in .vti, .nrrd or .npy, or give --out-format"));
+                .hint("end it in .vti, .nrrd, .npy or .vdb, or give --out-format"));
         }
     };
     output::check_overwrite(path, args.force, &[&args.input])?;
@@ -186,10 +193,14 @@ fn plan(
     input: &Input,
     options: &DistanceOptions,
     unit: Option<Unit>,
+    format: Option<GridFormat>,
     args: &SdfArgs,
     report: &mut RunReport,
 ) -> Result<Exit, Failure> {
-    let plan = pipeline::plan_distance(&input.loaded.mesh, options).map_err(|e| failure(&e, input, unit, args))?;
+    let mut plan = pipeline::plan_distance(&input.loaded.mesh, options).map_err(|e| failure(&e, input, unit, args))?;
+    if format == Some(GridFormat::Vdb) {
+        plan.file = plan.stored * 4;
+    }
     report.plan = Some(PlanEntry::Distance(plan));
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
@@ -217,6 +228,7 @@ fn samples<'a>(
     outcome: &DistanceOutcome,
     unit: Option<Unit>,
     plane: &'a (dyn Fn(usize, &mut Vec<f32>) + Sync),
+    blocks: &'a SampleBlocks<'a>,
 ) -> DistanceSamples<'a> {
     let lattice = &outcome.lattice;
     DistanceSamples {
@@ -226,6 +238,7 @@ fn samples<'a>(
         unit,
         band: outcome.report.band,
         plane,
+        blocks: Some(blocks),
     }
 }
 
