@@ -199,7 +199,7 @@ fn plan(
 ) -> Result<Exit, Failure> {
     let mut plan = pipeline::plan_distance(&input.loaded.mesh, options).map_err(|e| failure(&e, input, unit, args))?;
     if format == Some(GridFormat::Vdb) {
-        plan.file = plan.stored * 4;
+        plan.file = tree_bytes(&plan, options);
     }
     report.plan = Some(PlanEntry::Distance(plan));
     if !args.common.json {
@@ -212,6 +212,14 @@ fn plan(
         }
         _ => Ok(Exit::Done),
     }
+}
+
+/// The bytes of a file that leaves out what lies beyond the band. Blocks reach about five voxels farther than it on
+/// either side, as counted on meshes of all sorts.
+fn tree_bytes(plan: &DistancePlan, options: &DistanceOptions) -> u64 {
+    const BEYOND: f64 = 5.0;
+    let share = options.band.map_or(1.0, |band| band / (band + BEYOND * plan.voxel));
+    (4.0 * plan.stored as f64 * share) as u64
 }
 
 fn plan_rows(plan: &DistancePlan, unit: UnitName<'_>) -> Vec<Row> {

@@ -145,7 +145,7 @@ fn vtk_text_places_and_cells() {
 }
 
 fn nrrd(fields: &str, data: &[u8]) -> Vec<u8> {
-    let mut out = format!("NRRD0004\n# a remark\ndimension: 3\nsizes: 2 3 4\n{fields}\n\n").into_bytes();
+    let mut out = format!("NRRD0004\n# a remark\ndimension: 3\nsizes: 2 3 4\n{}\n\n", fields.trim_end()).into_bytes();
     out.extend(data);
     out
 }
