@@ -1,7 +1,7 @@
 //! What every fuzz target asks of a reader: no panic, and either an error with a message or a
 //! mesh that keeps the promise and can be written and read again.
 
-use meshwright::io::{Carried, Format, WriteOptions, encode_coloured, read_bytes};
+use meshwright::io::{Carried, Format, WriteOptions, encode_coloured, read_bytes, read_grid_bytes};
 
 /// Reads `data` as `format` and checks what comes out.
 pub fn check(data: &[u8], format: Format) {
@@ -45,4 +45,20 @@ pub fn packed(data: &[u8]) -> Vec<u8> {
     let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
     let written = zip.start_file("3D/3dmodel.model", options).map_err(std::io::Error::from).and_then(|()| zip.write_all(data));
     written.and_then(|()| Ok(zip.finish()?.into_inner())).unwrap_or_default()
+}
+
+/// Reads `data` as a grid of the format that it begins as, and asks for some of its values.
+pub fn check_grid(data: &[u8]) {
+    let file = match read_grid_bytes(data, None, None) {
+        Ok(file) => file,
+        Err(error) => {
+            assert!(!error.to_string().is_empty());
+            return;
+        }
+    };
+    assert!(file.spacing > 0.0 && file.origin.is_finite() && !file.dims.contains(&0));
+    let last = file.dims.map(|count| i32::try_from(count - 1).unwrap_or(i32::MAX));
+    for [x, y, z] in [[0, 0, 0], last, last.map(|k| k / 2)] {
+        assert!(file.at([x, y, z].into()).is_some_and(f32::is_finite));
+    }
 }

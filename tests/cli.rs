@@ -6,6 +6,8 @@ mod compare;
 mod files;
 #[path = "cli/sdf.rs"]
 mod sdf;
+#[path = "cli/slices.rs"]
+mod slices;
 #[path = "cli/solids.rs"]
 mod solids;
 #[path = "cli/stops.rs"]

@@ -5,6 +5,12 @@
 mod colours;
 #[path = "io/formats.rs"]
 mod formats;
+#[path = "io/grid_forms.rs"]
+mod grid_forms;
+#[path = "io/grid_lies.rs"]
+mod grid_lies;
+#[path = "io/grid_vdb.rs"]
+mod grid_vdb;
 #[path = "io/grids.rs"]
 mod grids;
 #[path = "io/hostile.rs"]

@@ -12,6 +12,7 @@ use super::devices::DevicesArgs;
 use super::length::{BandChoice, Length, Simplify, parse_duration, parse_size};
 use super::render::{ViewChoice, parse_view};
 use crate::field::language;
+use super::slice::SliceChoice;
 use crate::io::{Format, GridFormat, Unit};
 
 const EXIT_CODES: &str = "\
@@ -88,7 +89,7 @@ pub enum Verb {
     /// Write the same triangles in another format; nothing is repaired
     #[command(after_help = EXIT_CODES)]
     Convert(ConvertArgs),
-    /// Draw a mesh, or two for comparison, as a PNG picture
+    /// Draw a mesh or a slice of a grid, or two of these for comparison, as a PNG picture
     #[command(after_help = EXIT_CODES)]
     Render(RenderArgs),
     /// List the graphics adapters, and what --backend would take
@@ -216,7 +217,7 @@ pub struct SdfArgs {
     /// The mesh; all its shells together are one solid
     #[arg(value_name = "IN")]
     pub input: PathBuf,
-    /// Where to write the field: .vti, .nrrd or .npy
+    /// Where to write the field: .vti, .nrrd, .npy or .vdb
     #[arg(short, long, value_name = "OUT", required_unless_present = "plan")]
     pub output: Option<PathBuf>,
     /// Voxels along the longest side of the bounding box
@@ -416,10 +417,10 @@ pub struct ConvertArgs {
 /// `render IN [AFTER] -o PNG`.
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// The mesh to draw
+    /// The mesh to draw, or the grid (VTI, NRRD, NPY, VDB) of which to draw a slice
     #[arg(value_name = "IN")]
     pub input: PathBuf,
-    /// A second mesh: both are drawn side by side, from the same point of view
+    /// A second mesh or grid, drawn beside the first: meshes from the same point of view, slices of the same plane
     #[arg(value_name = "AFTER")]
     pub after: Option<PathBuf>,
     /// Where to write the PNG
@@ -437,6 +438,10 @@ pub struct RenderArgs {
     /// The y axis points up, not z
     #[arg(long)]
     pub y_up: bool,
+    /// Draw a slice: z (through the middle), x=50%, y=1.5 or z=2mm; of meshes, where no grid is given, through their
+    /// signed distance [default: z, for grids]
+    #[arg(long, value_name = "AXIS[=AT]", allow_hyphen_values = true)]
+    pub slice: Option<SliceChoice>,
     /// Which edges of triangles are drawn
     #[arg(long, value_enum, default_value_t = EdgeChoice::Sharp)]
     pub edges: EdgeChoice,

@@ -34,23 +34,40 @@ pub fn label(path: &Path) -> String {
 
 /// Reads every path, in order; the standard input at most once.
 pub fn read_all(paths: &[&Path], args: &InputArgs, session: &Session) -> Result<Vec<Input>, Failure> {
-    if paths.iter().filter(|path| is_stream(path)).count() > 1 {
-        return Err(Failure::usage("standard input (`-`) can be read only once"));
-    }
+    check_streams(paths)?;
     session.progress.stage("read")?;
     paths.iter().map(|path| read(path, args, session)).collect()
 }
 
+/// Refuses to read standard input twice.
+pub fn check_streams(paths: &[&Path]) -> Result<(), Failure> {
+    match paths.iter().filter(|path| is_stream(path)).count() {
+        0 | 1 => Ok(()),
+        _ => Err(Failure::usage("standard input (`-`) can be read only once")),
+    }
+}
+
 /// Reads one path; an input without triangles is an error.
 pub fn read(path: &Path, args: &InputArgs, session: &Session) -> Result<Input, Failure> {
+    let bytes = bytes_of(path, session)?;
+    mesh_of(path, &bytes, args, session)
+}
+
+/// All bytes of a path.
+pub fn bytes_of(path: &Path, session: &Session) -> Result<Vec<u8>, Failure> {
     session.progress.check()?;
+    let bytes = if is_stream(path) { read_stream() } else { std::fs::read(path) };
+    let bytes = bytes.map_err(|e| Failure::input(format!("cannot read {}: {}", label(path), plain_reason(&e))))?;
+    session.progress.check()?;
+    Ok(bytes)
+}
+
+/// The mesh in the bytes of a path.
+pub fn mesh_of(path: &Path, bytes: &[u8], args: &InputArgs, session: &Session) -> Result<Input, Failure> {
     let label = label(path);
     let stream = is_stream(path);
-    let bytes = if stream { read_stream() } else { std::fs::read(path) }
-        .map_err(|e| Failure::input(format!("cannot read {label}: {}", plain_reason(&e))))?;
-    session.progress.check()?;
     let name = (!stream).then_some(path);
-    let loaded = io::read_bytes(&bytes, args.in_format, name).map_err(|e| unreadable(&label, stream, args, &e))?;
+    let loaded = io::read_bytes(bytes, args.in_format, name).map_err(|e| unreadable(&label, stream, args, &e))?;
     if loaded.mesh.triangles.is_empty() {
         return Err(Failure::input(format!("{label}: the file has no triangles")));
     }
@@ -60,7 +77,7 @@ pub fn read(path: &Path, args: &InputArgs, session: &Session) -> Result<Input, F
         name: None,
         format: loaded.format.to_string(),
         bytes: bytes.len() as u64,
-        sha256: sha256(&bytes),
+        sha256: sha256(bytes),
         unit: loaded.unit.map(|unit| unit.to_string()),
         parts: loaded
             .parts

@@ -24,6 +24,7 @@ mod repair;
 mod report;
 mod sdf;
 mod session;
+mod slice;
 mod solid;
 mod summary;
 mod words;

@@ -12,39 +12,44 @@ use super::input::{self, Input, is_stream};
 use super::output::{check_overwrite, write_stream};
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
-use crate::io;
-use crate::picture::{EdgeDrawing, Image, Painted, RenderError, RenderOptions, View, render, render_pair};
+use super::slice::{self, Field, GridInput, SliceChoice, failure};
+use crate::io::{self, Format, GridFormat};
+use crate::picture::{EdgeDrawing, Image, Painted, RenderOptions, View, render, render_pair};
 
-/// Draws one mesh, or two on one sheet.
+/// Draws one mesh or slice, or two on one sheet.
 pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let paths: Vec<&Path> = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
     check_overwrite(&args.output, args.force, &paths)?;
-    let mut inputs = report.timed("read", |_| input::read_all(&paths, &args.reading, session))?;
+    let mut inputs = report.timed("read", |_| Inputs::read(&paths, args, session))?;
     // Two meshes share one camera, so they must share one unit.
-    input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
-    report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
+    input::common_unit(&mut inputs.meshes, &args.reading, &mut report.warnings);
+    inputs.describe(report);
     let options = options(args);
+    let choice = args.slice.unwrap_or_default();
+    let slices = inputs.slices(args);
     report.options = json!({
         "width": args.width, "height": args.height, "view": args.view.to_string(), "y_up": args.y_up,
         "edges": format!("{:?}", args.edges).to_lowercase(), "defects": options.defects,
+        "slice": slices.then(|| choice.to_string()),
     });
     session.progress.stage("draw")?;
-    let image = report.timed("draw", |_| match inputs.as_slice() {
-        [before, after, ..] => render_pair(painted(before), painted(after), &options, &session.progress)
-            .map(|images| Image::beside(&images)),
-        [one] => render(painted(one), &options, &session.progress),
-        [] => Err(RenderError::Empty),
-    });
-    let image = image.map_err(failure)?;
+    let images = report.timed("draw", |report| inputs.draw(&options, slices.then_some(&choice), session, report))?;
+    let image = match <[Image; 1]>::try_from(images) {
+        Ok([image]) => image,
+        Err(images) => Image::beside(&images),
+    };
     let png = image.to_png().map_err(|e| Failure::internal(format!("the picture cannot be encoded: {e}")))?;
     session.finish(|| write(&args.output, &png))?;
     let label = if is_stream(&args.output) { "standard output".into() } else { args.output.display().to_string() };
     session.clear_bar();
     session.say(&format!("{label}: {} x {} pixels", image.width, image.height));
-    if options.defects {
+    if options.defects && report.slices.len() < inputs.order.len() {
         session.say(
             "open edges red, edges of more than two triangles magenta, intersecting triangles yellow, inner sides rust red",
         );
+    }
+    for slice in &report.slices {
+        session.say(&slice.words(inputs.unit_of(&slice.path).as_deref()));
     }
     for warning in &report.warnings {
         session.say(&format!("note: {warning}"));
@@ -58,6 +63,121 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
         validity: None,
     });
     Ok(Exit::Done)
+}
+
+/// What is drawn.
+struct Inputs {
+    meshes: Vec<Input>,
+    grids: Vec<GridInput>,
+    order: Vec<Which>,
+}
+
+/// A mesh or a grid, by number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Which {
+    Mesh(usize),
+    Grid(usize),
+}
+
+impl Inputs {
+    fn read(paths: &[&Path], args: &RenderArgs, session: &Session) -> Result<Self, Failure> {
+        input::check_streams(paths)?;
+        session.progress.stage("read")?;
+        let mut inputs = Self { meshes: Vec::new(), grids: Vec::new(), order: Vec::new() };
+        for path in paths {
+            let bytes = input::bytes_of(path, session)?;
+            if is_grid(&bytes, path, args) {
+                inputs.order.push(Which::Grid(inputs.grids.len()));
+                inputs.grids.push(slice::grid_of(path, &bytes)?);
+            } else {
+                inputs.order.push(Which::Mesh(inputs.meshes.len()));
+                inputs.meshes.push(input::mesh_of(path, &bytes, &args.reading, session)?);
+            }
+        }
+        Ok(inputs)
+    }
+
+    /// Fills in what the report says of the inputs.
+    fn describe(&self, report: &mut RunReport) {
+        let entry = |which: &Which| match *which {
+            Which::Mesh(n) => self.meshes[n].entry.clone(),
+            Which::Grid(n) => self.grids[n].entry.clone(),
+        };
+        report.inputs = self.order.iter().map(entry).collect();
+        let notes = self.grids.iter().flat_map(|grid| &grid.file.warnings).cloned();
+        report.warnings.extend(notes);
+        let nowhere = self.grids.iter().filter(|grid| !grid.file.format.says_where());
+        report.warnings.extend(nowhere.map(|grid| {
+            let (path, format) = (&grid.entry.path, &grid.entry.format);
+            format!("{path}: {format} does not say where the voxels lie; their spacing was taken as 1")
+        }));
+    }
+
+    /// Whether slices are drawn: of the grids, or else of the meshes where that was asked for.
+    fn slices(&self, args: &RenderArgs) -> bool {
+        !self.grids.is_empty() || args.slice.is_some()
+    }
+
+    fn unit_of(&self, path: &str) -> Option<String> {
+        let grids = self.grids.iter().map(|grid| (&grid.entry.path, grid.file.unit));
+        let mut all = grids.chain(self.meshes.iter().map(|mesh| (&mesh.label, mesh.loaded.unit)));
+        all.find(|(label, _)| *label == path).and_then(|(_, unit)| unit).map(|unit| unit.to_string())
+    }
+
+    /// The images in the order of the inputs.
+    fn draw(
+        &self,
+        options: &RenderOptions,
+        choice: Option<&SliceChoice>,
+        session: &Session,
+        report: &mut RunReport,
+    ) -> Result<Vec<Image>, Failure> {
+        let Some(choice) = choice else {
+            return surfaces(&self.meshes.iter().collect::<Vec<_>>(), options, session);
+        };
+        let sliced: Vec<Which> = match self.grids.is_empty() {
+            true => self.order.clone(),
+            false => self.order.iter().copied().filter(|which| matches!(which, Which::Grid(_))).collect(),
+        };
+        let field = |which: &Which| match *which {
+            Which::Mesh(n) => Field::of_mesh(&self.meshes[n], session),
+            Which::Grid(n) => Ok(Field::of_grid(&self.grids[n])),
+        };
+        let fields: Vec<Field<'_>> = sliced.iter().map(field).collect::<Result<_, _>>()?;
+        let size = [options.width, options.height];
+        let slices = slice::draw(&fields, choice, size, session, &mut report.warnings)?;
+        let mut slices = slices.into_iter();
+        let mut images = Vec::new();
+        for which in &self.order {
+            match (sliced.contains(which).then(|| slices.next()).flatten(), *which) {
+                (Some((image, entry)), _) => {
+                    images.push(image);
+                    report.slices.push(entry);
+                }
+                (None, Which::Mesh(n)) => images.extend(surfaces(&[&self.meshes[n]], options, session)?),
+                (None, Which::Grid(_)) => return Err(Failure::internal("a grid was not drawn")),
+            }
+        }
+        Ok(images)
+    }
+}
+
+/// A grid by what its bytes begin as, or by its name where they are no mesh either.
+fn is_grid(bytes: &[u8], path: &Path, args: &RenderArgs) -> bool {
+    let named = || !is_stream(path) && GridFormat::from_path(path).is_some() && Format::detect(bytes, None).is_none();
+    args.reading.in_format.is_none() && (GridFormat::from_content(bytes).is_some() || named())
+}
+
+/// One mesh, or two by one camera.
+fn surfaces(meshes: &[&Input], options: &RenderOptions, session: &Session) -> Result<Vec<Image>, Failure> {
+    let drawn = match meshes {
+        [before, after, ..] => {
+            render_pair(painted(before), painted(after), options, &session.progress).map(|images| images.to_vec())
+        }
+        [one] => render(painted(one), options, &session.progress).map(|image| vec![image]),
+        [] => Ok(Vec::new()),
+    };
+    drawn.map_err(failure)
 }
 
 fn painted(input: &Input) -> Painted<'_> {
@@ -77,14 +197,6 @@ fn options(args: &RenderArgs) -> RenderOptions {
         },
         defects: !args.no_defects,
         ..RenderOptions::default()
-    }
-}
-
-fn failure(error: RenderError) -> Failure {
-    match error {
-        RenderError::Stopped(stopped) => stopped.into(),
-        RenderError::Empty => Failure::input(error.to_string()),
-        RenderError::Size { .. } => Failure::usage(error.to_string()).hint("a smaller --width or --height"),
     }
 }
 

@@ -57,6 +57,9 @@ pub struct RunReport {
     /// What `compare` measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
+    /// The slices that `render` drew.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub slices: Vec<super::slice::SliceEntry>,
     /// The written file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputEntry>,
@@ -151,6 +154,7 @@ impl RunReport {
             thickness: None,
             devices: None,
             comparison: None,
+            slices: Vec::new(),
             output: None,
             warnings: Vec::new(),
             stages: Vec::new(),

@@ -16,7 +16,8 @@ use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
 use super::{limits, output};
-use crate::io::{DistanceSamples, GridFormat, Unit};
+use crate::io::{DistanceSamples, GridFormat, SampleBlocks, Unit};
+use crate::lattice::Slot;
 use crate::mesh::Validity;
 use crate::pipeline::{
     self, DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, VoxelSize,
@@ -38,7 +39,7 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
     report.options = resolved(args, unit, format, &options);
     report.inputs[0].validity = Some(validity.clone());
     let Some((path, format)) = args.output.as_deref().zip(format).filter(|_| !args.plan) else {
-        return plan(input, &options, unit, args, report);
+        return plan(input, &options, unit, format, args, report);
     };
     report.warnings.extend(doubts(&options, &validity, format));
     let outcome = pipeline::distance(&input.loaded.mesh, &options, &session.progress)
@@ -68,7 +69,7 @@ fn format(args: &SdfArgs) -> Result<Option<GridFormat>, Failure> {
         }
         (None, None) => {
             return Err(Failure::usage(format!("the name {} does not tell its format", path.display()))
-                .hint("end it in .vti, .nrrd or .npy, or give --out-format"));
+                .hint("end it in .vti, .nrrd, .npy or .vdb, or give --out-format"));
         }
     };
     output::check_overwrite(path, args.force, &[&args.input])?;
@@ -184,10 +185,14 @@ fn plan(
     input: &Input,
     options: &DistanceOptions,
     unit: Option<Unit>,
+    format: Option<GridFormat>,
     args: &SdfArgs,
     report: &mut RunReport,
 ) -> Result<Exit, Failure> {
-    let plan = pipeline::plan_distance(&input.loaded.mesh, options).map_err(|e| failure(&e, input, unit, args))?;
+    let mut plan = pipeline::plan_distance(&input.loaded.mesh, options).map_err(|e| failure(&e, input, unit, args))?;
+    if format == Some(GridFormat::Vdb) {
+        plan.file = tree_bytes(&plan, options);
+    }
     report.plan = Some(PlanEntry::Distance(plan));
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
@@ -199,6 +204,14 @@ fn plan(
         }
         _ => Ok(Exit::Done),
     }
+}
+
+/// The bytes of a file that leaves out what lies beyond the band. Blocks reach about five voxels farther than it on
+/// either side, as counted on meshes of all sorts.
+fn tree_bytes(plan: &DistancePlan, options: &DistanceOptions) -> u64 {
+    const BEYOND: f64 = 5.0;
+    let share = options.band.map_or(1.0, |band| band / (band + BEYOND * plan.voxel));
+    (4.0 * plan.stored as f64 * share) as u64
 }
 
 fn plan_rows(plan: &DistancePlan, unit: UnitName<'_>) -> Vec<Row> {
@@ -215,6 +228,7 @@ fn samples<'a>(
     outcome: &DistanceOutcome,
     unit: Option<Unit>,
     plane: &'a (dyn Fn(usize, &mut Vec<f32>) + Sync),
+    blocks: &'a SampleBlocks<'a>,
 ) -> DistanceSamples<'a> {
     let lattice = &outcome.lattice;
     DistanceSamples {
@@ -224,6 +238,7 @@ fn samples<'a>(
         unit,
         band: outcome.report.band,
         plane,
+        blocks: Some(blocks),
     }
 }
 
@@ -237,7 +252,13 @@ pub(super) fn write(
     report: &mut RunReport,
 ) -> Result<OutputEntry, Failure> {
     let plane = |z: usize, values: &mut Vec<f32>| outcome.plane(z, values);
-    let samples = samples(outcome, unit, &plane);
+    let (bricks, h) = (&outcome.field.bricks, outcome.lattice.h);
+    let blocks = SampleBlocks {
+        stored: bricks.active(),
+        values: &|n| outcome.field.values[n].map(|value| (f64::from(value) * h) as f32),
+        inside: &|brick| bricks.slot(brick) == Slot::Inside,
+    };
+    let samples = samples(outcome, unit, &plane, &blocks);
     report.timed("write and verify", |_| {
         session.progress.stage("write")?;
         output::write_grid(path, &samples, format, session)

@@ -46,7 +46,11 @@ pub(crate) use colour::linear_from_srgb;
 pub use colour::{Carried, Colours, Rgba};
 pub use error::{Place, ReadError, ReadProblem, WriteError, WriteProblem};
 pub use format::{Format, UnknownFormat};
-pub use grids::{DistanceSamples, GridFormat, UnknownGridFormat, encode_grid, write_grid};
+pub use grids::{
+    BLOCK_SIDE, BLOCK_VOXELS, Block, BlockValues, DistanceSamples, GridFile, GridFormat, GridReadError,
+    GridReadProblem, GridValues, SampleBlocks, SparseValues, Tile, UnknownGridFormat, encode_grid, read_grid,
+    read_grid_bytes, write_grid,
+};
 pub use ply::{VertexMap, encode_vertex_map};
 pub use save::save_bytes;
 pub use unit::{Unit, UnknownUnit};

@@ -42,6 +42,14 @@ impl Image {
         self.rgba.get(at..at + 4).filter(|_| inside).and_then(|p| p.try_into().ok())
     }
 
+    /// Gives a pixel a colour; no effect beside the image.
+    pub(super) fn set(&mut self, x: u32, y: u32, colour: [u8; 4]) {
+        if x < self.width && y < self.height {
+            let at = 4 * (y as usize * self.width as usize + x as usize);
+            self.rgba[at..at + 4].copy_from_slice(&colour);
+        }
+    }
+
     /// One sheet with all images side by side, in order, centred vertically, with small gaps. Gaps are filled with the colour
     /// of the first image's first pixel.
     pub fn beside(images: &[Image]) -> Image {

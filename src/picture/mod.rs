@@ -1,10 +1,12 @@
-//! Pictures of meshes, drawn on the CPU: shaded, with edges and with defects coloured.
+//! Pictures, drawn on the CPU: of meshes, shaded, with edges and with defects coloured; and of slices of fields.
 //!
 //! The way of the data: [`View`] and size make a camera; the mesh in the camera's space makes a
 //! scene (triangles, normals, lines); a depth buffer finds what each sample sees, rays how much of the sky that sees;
 //! shading, lines and averaging make an [`Image`]. Lengths within are pixels.
 
 mod camera;
+mod colour_map;
+mod digits;
 mod image;
 mod light;
 mod lines;
@@ -12,12 +14,14 @@ mod occlusion;
 mod ramp;
 mod scene;
 mod sight;
+mod slice;
 
 use rayon::prelude::*;
 
 pub use camera::View;
 pub use image::Image;
 pub use ramp::ramp_colour;
+pub use slice::{Axis, SliceColours, SlicePlane, SliceSamples, sample_slice, slice};
 
 use crate::io::Colours;
 use crate::mesh::TriMesh;
@@ -162,13 +166,18 @@ pub fn render_pair<'a>(
 
 fn camera_for(meshes: &[&TriMesh], options: &RenderOptions) -> Result<Camera, RenderError> {
     let &RenderOptions { width, height, supersampling, .. } = options;
+    check_size([width, height], supersampling)?;
+    Camera::new(&options.view, meshes, [width, height]).ok_or(RenderError::Empty)
+}
+
+fn check_size([width, height]: [u32; 2], supersampling: u32) -> Result<(), RenderError> {
     let side = 1..=MAX_SIDE;
     let samples = u64::from(width) * u64::from(height) * u64::from(supersampling.min(9)).pow(2);
     let small = samples <= MAX_SAMPLES;
     if !side.contains(&width) || !side.contains(&height) || !(1..=8).contains(&supersampling) || !small {
         return Err(RenderError::Size { width, height, supersampling });
     }
-    Camera::new(&options.view, meshes, [width, height]).ok_or(RenderError::Empty)
+    Ok(())
 }
 
 fn draw(

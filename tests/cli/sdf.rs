@@ -226,7 +226,7 @@ fn wrong_usage_and_inputs_that_enclose_nothing() {
     let folder = folder();
     for (arguments, status, words) in [
         ("testdata/torus.ply", 2, "--output"),
-        ("testdata/torus.ply -o OUT/a.stl", 2, ".vti, .nrrd or .npy"),
+        ("testdata/torus.ply -o OUT/a.stl", 2, ".vti, .nrrd, .npy or .vdb"),
         ("testdata/torus.ply -o -", 2, "--out-format"),
         ("testdata/torus.ply -o OUT/a.nrrd --band 0", 2, "not above zero"),
         ("testdata/torus.ply -o OUT/a.nrrd --band wide", 2, "not a length"),

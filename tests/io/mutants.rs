@@ -26,8 +26,9 @@ fn four_colours() -> Colours {
     Colours::Faces(vec![[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 9], [1, 2, 3, 255]])
 }
 
+/// One change to some bytes.
 #[derive(Debug, Clone)]
-enum Change {
+pub enum Change {
     Flip(prop::sample::Index, u8),
     Set(prop::sample::Index, u8),
     Insert(prop::sample::Index, Vec<u8>),
@@ -36,7 +37,8 @@ enum Change {
     CutAt(prop::sample::Index),
 }
 
-fn change() -> impl Strategy<Value = Change> {
+/// Any change.
+pub fn change() -> impl Strategy<Value = Change> {
     let place = || any::<prop::sample::Index>();
     let words = prop::sample::select(vec![
         "-1",
@@ -64,7 +66,8 @@ fn change() -> impl Strategy<Value = Change> {
     ]
 }
 
-fn apply(bytes: &mut Vec<u8>, change: &Change) {
+/// Changes the bytes.
+pub fn apply(bytes: &mut Vec<u8>, change: &Change) {
     if bytes.is_empty() {
         return;
     }

@@ -1,16 +1,26 @@
-//! Files of numbers on a regular lattice, written plane by plane, so that the whole need not be in memory.
+//! Files of numbers on a regular lattice: written plane by plane or block by block, so that the whole need not be in
+//! memory, and read into a [`GridFile`].
 
+mod error;
+mod file;
+mod format;
 mod npy;
 mod nrrd;
+mod numbers;
+mod read;
+mod vdb;
 mod vti;
 
-use std::ffi::OsStr;
-use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
-use std::str::FromStr;
 
-use glam::DVec3;
+use glam::{DVec3, IVec3};
+
+pub use error::{GridReadError, GridReadProblem};
+pub use file::{BLOCK_SIDE, BLOCK_VOXELS, Block, BlockValues, GridFile, GridValues, SparseValues, Tile};
+use file::{all_finite, one_spacing, spacing_of_axes};
+pub use format::{GridFormat, UnknownGridFormat};
+pub use read::{read_grid, read_grid_bytes};
 
 use super::save::save_bytes;
 use super::{Unit, WriteError};
@@ -29,64 +39,22 @@ pub struct DistanceSamples<'a> {
     pub band: Option<f64>,
     /// Appends to the list the values of plane `z`, model units and negative inside: x changes fastest, then y.
     pub plane: &'a (dyn Fn(usize, &mut Vec<f32>) + Sync),
+    /// The same values in blocks, where there are such; else formats that store blocks make them of the planes.
+    pub blocks: Option<&'a SampleBlocks<'a>>,
 }
 
-/// A file format for lattices.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum GridFormat {
-    /// VTK image data: XML, the numbers appended as they are.
-    Vti,
-    /// Nearly raw raster data: a text header and the numbers as they are.
-    Nrrd,
-    /// A NumPy array, which has no place for origin, spacing and unit.
-    Npy,
+/// Values near the surface in blocks of 8³ voxels. The first voxel of block `b` is `8 b`.
+pub struct SampleBlocks<'a> {
+    /// The blocks that have values, none twice; those outside the lattice do not count. Wherever two neighbouring voxels
+    /// lie on different sides, their blocks are among them.
+    pub stored: &'a [IVec3],
+    /// The values of block `stored[n]`, model units and negative inside. What lies beyond the lattice does not count.
+    pub values: &'a (dyn Fn(usize) -> BlockValues + Sync),
+    /// Whether a block of the lattice that is not stored lies inside; all its values are ± the band.
+    pub inside: &'a (dyn Fn(IVec3) -> bool + Sync),
 }
 
-impl GridFormat {
-    /// Every format.
-    pub const ALL: [Self; 3] = [Self::Vti, Self::Nrrd, Self::Npy];
-
-    /// The name, which is also the usual extension.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Vti => "vti",
-            Self::Nrrd => "nrrd",
-            Self::Npy => "npy",
-        }
-    }
-
-    /// The format that the extension of `path` names, in any case of letters.
-    pub fn from_path(path: &Path) -> Option<Self> {
-        path.extension().and_then(OsStr::to_str)?.parse().ok()
-    }
-
-    /// Whether the file says where the lattice lies and in which unit.
-    pub fn says_where(self) -> bool {
-        self != Self::Npy
-    }
-}
-
-impl fmt::Display for GridFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-/// A name that is no format for lattices.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is no format for lattices known here; use vti, nrrd or npy")]
-pub struct UnknownGridFormat(pub String);
-
-impl FromStr for GridFormat {
-    type Err = UnknownGridFormat;
-
-    fn from_str(text: &str) -> Result<Self, UnknownGridFormat> {
-        let found = Self::ALL.into_iter().find(|format| format.name().eq_ignore_ascii_case(text));
-        found.ok_or_else(|| UnknownGridFormat(text.to_owned()))
-    }
-}
-
-/// Writes the samples as bytes to `out`: `f32`, the lowest byte first.
+/// Writes the samples as bytes to `out`: `f32`, the lowest byte first. VDB leaves out what lies beyond the band.
 ///
 /// # Errors
 /// What `out` returns, and [`io::ErrorKind::InvalidData`] when a plane has not as many values as it has points.
@@ -95,6 +63,7 @@ pub fn encode_grid(samples: &DistanceSamples<'_>, format: GridFormat, out: &mut 
         GridFormat::Vti => vti::write(samples, out),
         GridFormat::Nrrd => nrrd::write(samples, out),
         GridFormat::Npy => npy::write(samples, out),
+        GridFormat::Vdb => vdb::write(samples, out),
     }
 }
 
@@ -111,17 +80,26 @@ fn write_values(samples: &DistanceSamples<'_>, out: &mut dyn Write) -> io::Resul
     let points = samples.dims[0] * samples.dims[1];
     let (mut values, mut bytes) = (Vec::with_capacity(points), Vec::with_capacity(4 * points));
     for z in 0..samples.dims[2] {
-        values.clear();
-        (samples.plane)(z, &mut values);
-        if values.len() != points {
-            let text = format!("plane {z} has {} values, and {points} points", values.len());
-            return Err(io::Error::new(io::ErrorKind::InvalidData, text));
-        }
+        read_plane(samples, z, &mut values)?;
         bytes.clear();
         bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
         out.write_all(&bytes)?;
     }
     Ok(())
+}
+
+/// Replaces `values` by those of plane `z`.
+fn read_plane(samples: &DistanceSamples<'_>, z: usize, values: &mut Vec<f32>) -> io::Result<()> {
+    let points = samples.dims[0] * samples.dims[1];
+    values.clear();
+    (samples.plane)(z, values);
+    match values.len() == points {
+        true => Ok(()),
+        false => {
+            let text = format!("plane {z} has {} values, and {points} points", values.len());
+            Err(io::Error::new(io::ErrorKind::InvalidData, text))
+        }
+    }
 }
 
 /// The convention in words, for formats with a place for remarks.

@@ -1,10 +1,10 @@
-//! NRRD, version 5, header and numbers in one file.
+//! Writing version 5, raw.
 
 use std::io::{self, Write};
 
-use super::{DistanceSamples, remark, write_values};
+use super::super::{DistanceSamples, remark, write_values};
 
-pub(super) fn write(samples: &DistanceSamples<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub(in crate::io::grids) fn write(samples: &DistanceSamples<'_>, out: &mut dyn Write) -> io::Result<()> {
     let [x, y, z] = samples.dims;
     let (o, h) = (samples.origin, samples.spacing);
     writeln!(out, "NRRD0005\n# {}", remark(samples))?;

@@ -1,15 +1,15 @@
-//! NumPy arrays, version 1.0. The array has the axes x, y, z.
+//! Writing version 1.0.
 
 use std::io::{self, Write};
 
-use super::{DistanceSamples, write_values};
+use super::super::{DistanceSamples, write_values};
 
 /// Header and magic together end on a multiple of this.
 const ALIGNMENT: usize = 64;
 /// Magic, version, and length of the header.
 const BEFORE_HEADER: usize = 10;
 
-pub(super) fn write(samples: &DistanceSamples<'_>, out: &mut dyn Write) -> io::Result<()> {
+pub(in crate::io::grids) fn write(samples: &DistanceSamples<'_>, out: &mut dyn Write) -> io::Result<()> {
     let [x, y, z] = samples.dims;
     let mut header = format!("{{'descr': '<f4', 'fortran_order': True, 'shape': ({x}, {y}, {z}), }}");
     let length = (BEFORE_HEADER + header.len() + 1).next_multiple_of(ALIGNMENT) - BEFORE_HEADER;

@@ -1,0 +1,324 @@
+//! `--slice`: a plane through grids, or through the signed distance of meshes.
+
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
+
+use glam::{DVec3, IVec3};
+use serde::Serialize;
+
+use super::exit::Failure;
+use super::input::{self, Input};
+use super::length::QuantityError;
+use super::report::InputEntry;
+use super::session::Session;
+use super::words::{self, UnitName};
+use crate::io::{GridFile, Unit, read_grid_bytes};
+use crate::mesh::Bounds;
+use crate::picture::{Axis, Image, RenderError, SliceColours, SlicePlane, SliceSamples, sample_slice};
+use crate::sdf::exact::{ExactDistance, PointSign};
+use crate::vote::WindingTree;
+
+/// Around a mesh, this part of its longest side is shown.
+const MARGIN: f64 = 0.15;
+
+/// `--slice` as typed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SliceChoice {
+    axis: Axis,
+    at: Place,
+}
+
+/// Where on the axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Place {
+    /// A share of the extent, percent.
+    Percent(f64),
+    /// In model units.
+    Plain(f64),
+    /// In a unit of its own.
+    Unit(f64, Unit),
+}
+
+impl Default for SliceChoice {
+    fn default() -> Self {
+        Self { axis: Axis::Z, at: Place::Percent(50.0) }
+    }
+}
+
+impl FromStr for SliceChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("`{text}` is not an axis, perhaps with a place, such as z, x=50%, y=-1.5 or z=2mm");
+        let (axis, at) = text.split_once('=').unwrap_or((text, "50%"));
+        let axis = match axis.trim() {
+            "x" => Axis::X,
+            "y" => Axis::Y,
+            "z" => Axis::Z,
+            _ => return Err(wrong()),
+        };
+        let number = at.trim().trim_end_matches(|c: char| c.is_alphabetic() || c == '%');
+        let suffix = &at.trim()[number.len()..];
+        let value: f64 = number.trim_end().parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(wrong)?;
+        let at = match suffix {
+            "" => Place::Plain(value),
+            "%" => Place::Percent(value),
+            unit => Place::Unit(value, unit.parse().map_err(|_| wrong())?),
+        };
+        Ok(Self { axis, at })
+    }
+}
+
+impl fmt::Display for SliceChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let axis = axis_name(self.axis);
+        match self.at {
+            Place::Percent(value) => write!(f, "{axis}={value}%"),
+            Place::Plain(value) => write!(f, "{axis}={value}"),
+            Place::Unit(value, unit) => write!(f, "{axis}={value}{unit}"),
+        }
+    }
+}
+
+fn axis_name(axis: Axis) -> &'static str {
+    ["x", "y", "z"][axis.number()]
+}
+
+impl SliceChoice {
+    /// The position on the axis, model units, which must lie within `bounds`.
+    fn resolve(&self, bounds: &Bounds, unit: Option<Unit>) -> Result<f64, Failure> {
+        let k = self.axis.number();
+        let [low, high] = [bounds.min[k], bounds.max[k]];
+        let at = match self.at {
+            Place::Percent(share) => low + (high - low) * share / 100.0,
+            Place::Plain(value) => value,
+            Place::Unit(value, own) => {
+                let model = unit.ok_or_else(|| QuantityError::UnitUnknown { length: format!("{value}{own}") })?;
+                value * (own.metres() / model.metres())
+            }
+        };
+        match (low..=high).contains(&at) {
+            true => Ok(at),
+            false => {
+                let [from, to] = [low, high].map(words::number);
+                let name = axis_name(self.axis);
+                Err(Failure::usage(format!("--slice {self} lies outside: {name} goes from {from} to {to}"))
+                    .hint(format!("--slice {name} goes through the middle")))
+            }
+        }
+    }
+}
+
+/// A grid as read.
+pub struct GridInput {
+    /// The content.
+    pub file: GridFile,
+    /// Its entry in the report.
+    pub entry: InputEntry,
+}
+
+/// The grid in the bytes of a path.
+pub fn grid_of(path: &Path, bytes: &[u8]) -> Result<GridInput, Failure> {
+    let name = (!input::is_stream(path)).then_some(path);
+    let file = read_grid_bytes(bytes, None, name).map_err(|error| Failure::input(error.to_string()))?;
+    let entry = InputEntry {
+        path: input::label(path),
+        name: None,
+        format: file.format.to_string(),
+        bytes: bytes.len() as u64,
+        sha256: input::sha256(bytes),
+        unit: file.unit.map(|unit| unit.to_string()),
+        parts: Vec::new(),
+        warnings: file.warnings.clone(),
+        validity: None,
+    };
+    Ok(GridInput { file, entry })
+}
+
+/// A field to slice.
+pub struct Field<'a> {
+    /// How the input is called.
+    label: &'a str,
+    unit: Option<Unit>,
+    bounds: Bounds,
+    value: Box<dyn Fn(DVec3) -> f64 + Sync + 'a>,
+}
+
+impl<'a> Field<'a> {
+    /// The values of a grid, linear between voxels and nothing beyond.
+    pub fn of_grid(grid: &'a GridInput) -> Self {
+        let file = &grid.file;
+        let extent = DVec3::from(file.dims.map(|count| (count - 1) as f64)) * file.spacing;
+        let bounds = Bounds { min: file.origin, max: file.origin + extent };
+        let value = Box::new(|p| interpolated(file, p).unwrap_or(f64::NAN));
+        Self { label: &grid.entry.path, unit: file.unit, bounds, value }
+    }
+
+    /// The exact signed distance of a mesh: by pseudonormals for a valid solid, else by the winding number.
+    pub fn of_mesh(input: &'a Input, session: &Session) -> Result<Self, Failure> {
+        let mesh = &input.loaded.mesh;
+        let valid = input::examine(&input.loaded, session)?.is_valid();
+        let sign = match valid {
+            true => PointSign::Pseudonormal,
+            false => PointSign::Winding(WindingTree::new(mesh, 0..mesh.triangles.len(), &session.progress)?),
+        };
+        let bounds = mesh.bounds().ok_or_else(|| Failure::input(RenderError::Empty.to_string()))?;
+        let margin = MARGIN * bounds.size().max_element();
+        let bounds = Bounds { min: bounds.min - margin, max: bounds.max + margin };
+        let exact = ExactDistance::of(mesh, sign);
+        let value = Box::new(move |p| exact.at(p).map_or(f64::NAN, |nearest| nearest.signed));
+        Ok(Self { label: &input.label, unit: input.loaded.unit, bounds, value })
+    }
+}
+
+/// Linear between the eight voxels around `p`; `None` outside the lattice.
+fn interpolated(file: &GridFile, p: DVec3) -> Option<f64> {
+    // The last voxel belongs to the lattice, and rounding must not take it away.
+    const ROUNDING: f64 = 1e-9;
+    let last = DVec3::from(file.dims.map(|count| (count - 1) as f64));
+    let at = (p - file.origin) / file.spacing;
+    if !(at.cmpge(-last * ROUNDING - ROUNDING).all() && at.cmple(last * (1.0 + ROUNDING) + ROUNDING).all()) {
+        return None;
+    }
+    let at = at.clamp(DVec3::ZERO, last);
+    let first = at.floor().min((last - 1.0).max(DVec3::ZERO));
+    let (t, voxel) = (at - first, first.as_ivec3());
+    let far = last.min(DVec3::ONE).as_ivec3();
+    let value = |x: i32, y: i32, z: i32| file.at(voxel + IVec3::new(x, y, z) * far).map(f64::from);
+    let along_x = |y: i32, z: i32| Some(value(0, y, z)? * (1.0 - t.x) + value(1, y, z)? * t.x);
+    let along_y = |z: i32| Some(along_x(0, z)? * (1.0 - t.y) + along_x(1, z)? * t.y);
+    Some(along_y(0)? * (1.0 - t.z) + along_y(1)? * t.z)
+}
+
+/// A slice in the report.
+#[derive(Debug, Clone, Serialize)]
+pub struct SliceEntry {
+    /// The input.
+    pub path: String,
+    /// The axis that the plane is across: `x`, `y` or `z`.
+    pub axis: &'static str,
+    /// Where on the axis, model units.
+    pub at: f64,
+    /// The smallest and the largest value seen, model units; nothing where the plane misses the grid.
+    pub range: Option<[f64; 2]>,
+    /// How far from zero colours are full, model units.
+    pub full: f64,
+    /// From one line to the next, model units.
+    pub step: f64,
+}
+
+impl SliceEntry {
+    /// The entry in words.
+    pub fn words(&self, unit: UnitName<'_>) -> String {
+        let at = words::length(self.at, unit);
+        let (full, step) = (words::length(self.full, unit), words::length(self.step, unit));
+        let range = match self.range.map(|range| range.map(words::number)) {
+            Some([low, high]) => words::with_unit(&format!("{low} to {high}"), unit),
+            None => "no values".into(),
+        };
+        let (path, axis) = (&self.path, self.axis);
+        format!(
+            "{path}: slice {axis} = {at}: {range}; blue inside, orange outside, full at ± {full}; lines every {step}"
+        )
+    }
+}
+
+/// Draws all fields on the same plane in the same colours.
+pub fn draw(
+    fields: &[Field<'_>],
+    choice: &SliceChoice,
+    size: [u32; 2],
+    session: &Session,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<(Image, SliceEntry)>, Failure> {
+    let bounds = fields.iter().map(|field| field.bounds).reduce(|a, b| a.union(&b));
+    let bounds = bounds.ok_or_else(|| Failure::internal("there is no field to slice"))?;
+    let unit = fields.iter().find_map(|field| field.unit);
+    if fields.iter().any(|field| field.unit.is_some_and(|own| Some(own) != unit)) {
+        warnings.push("the slices have different units; nothing was rescaled".to_owned());
+    }
+    let at = choice.resolve(&bounds, unit)?;
+    let plane = SlicePlane::through(&bounds, choice.axis, at);
+    let sample = |field: &Field<'_>| sample_slice(&field.value, &plane, size, &session.progress);
+    let samples: Vec<SliceSamples> = fields.iter().map(sample).collect::<Result<_, _>>().map_err(failure)?;
+    let colours = SliceColours::up_to(samples.iter().map(SliceSamples::farthest).fold(0.0, f64::max));
+    let entry = |field: &Field<'_>, samples: &SliceSamples| SliceEntry {
+        path: field.label.to_owned(),
+        axis: axis_name(choice.axis),
+        at,
+        range: samples.range(),
+        full: colours.full,
+        step: colours.step,
+    };
+    let drawn = fields.iter().zip(&samples).map(|(field, samples)| (samples.draw(&colours), entry(field, samples)));
+    Ok(drawn.collect())
+}
+
+/// Why there is no picture.
+pub fn failure(error: RenderError) -> Failure {
+    match error {
+        RenderError::Stopped(stopped) => stopped.into(),
+        RenderError::Empty => Failure::input(error.to_string()),
+        RenderError::Size { .. } => Failure::usage(error.to_string()).hint("a smaller --width or --height"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::{GridFormat, GridValues};
+
+    fn grid(dims: [usize; 3], value: impl Fn([usize; 3]) -> f32) -> GridFile {
+        let all = (0..dims.iter().product()).map(|n| [n % dims[0], n / dims[0] % dims[1], n / (dims[0] * dims[1])]);
+        GridFile {
+            format: GridFormat::Vti,
+            origin: DVec3::new(1.0, 2.0, 3.0),
+            spacing: 0.5,
+            dims,
+            unit: None,
+            band: None,
+            values: GridValues::Dense(all.map(value).collect()),
+            warnings: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn what_is_linear_between_voxels_is_met_exactly() {
+        let file = grid([3, 4, 5], |[x, y, z]| (x as f32) - 2.0 * (y as f32) + 3.0 * (z as f32));
+        for place in [[0.0; 3], [0.3, 1.7, 2.2], [2.0, 3.0, 4.0], [1.999, 0.0, 3.5]].map(DVec3::from) {
+            let found = interpolated(&file, file.origin + place * file.spacing).expect("it is in the lattice");
+            assert!((found - place.dot(DVec3::new(1.0, -2.0, 3.0))).abs() < 1e-9, "{place}: {found}");
+        }
+        for place in [[-0.01, 1.0, 1.0], [1.0, 3.01, 1.0], [f64::NAN, 1.0, 1.0]].map(DVec3::from) {
+            assert_eq!(interpolated(&file, file.origin + place * file.spacing), None);
+        }
+        // One plane of voxels is a lattice too.
+        let flat = grid([3, 1, 2], |[x, _, z]| (x + 10 * z) as f32);
+        assert_eq!(interpolated(&flat, DVec3::new(1.25, 2.0, 3.25)), Some(5.5));
+    }
+
+    #[test]
+    fn slices_as_typed() {
+        let bounds = Bounds { min: DVec3::new(0.0, -2.0, 10.0), max: DVec3::new(4.0, 2.0, 30.0) };
+        for (text, unit, at) in [
+            ("z", None, 20.0),
+            ("x=25%", None, 1.0),
+            ("y=-1.5", None, -1.5),
+            ("z=2cm", Some(Unit::Millimetre), 20.0),
+            (" x = 3 ", None, 3.0),
+        ] {
+            let choice: SliceChoice = text.parse().unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!(choice.resolve(&bounds, unit).ok(), Some(at), "{text}");
+            assert_eq!(choice.to_string().parse(), Ok(choice));
+        }
+        for text in ["", "w", "z=", "z=a", "z=1h", "z=nan", "1", "z=1=2"] {
+            assert!(text.parse::<SliceChoice>().is_err(), "{text}");
+        }
+        for text in ["x=5", "x=-1%", "y=1mm"] {
+            let choice: SliceChoice = text.parse().expect("it can be read");
+            assert!(choice.resolve(&bounds, None).is_err(), "{text}");
+        }
+        assert_eq!(SliceChoice::default().to_string(), "z=50%");
+    }
+}

@@ -1,0 +1,198 @@
+//! A lattice as read.
+
+use glam::{DVec3, IVec3};
+
+use super::{GridFormat, GridReadProblem};
+use crate::io::Unit;
+
+/// Voxels along one side of a block.
+pub const BLOCK_SIDE: i32 = 8;
+/// Voxels of a block.
+pub const BLOCK_VOXELS: usize = 512;
+
+/// The values of a block; voxel (x, y, z) of it has index `x + 8 y + 64 z`.
+pub type BlockValues = [f32; BLOCK_VOXELS];
+
+/// A file of a lattice as read. Voxel `v` lies at `origin + spacing * v`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GridFile {
+    /// The format that was found.
+    pub format: GridFormat,
+    /// Position of voxel (0, 0, 0), model units; zero where the format has no place for it.
+    pub origin: DVec3,
+    /// Voxel spacing, model units, above zero; 1 where the format has no place for it.
+    pub spacing: f64,
+    /// Voxels along x, y, z, each at least 1.
+    pub dims: [usize; 3],
+    /// The unit of all lengths, where the file states it.
+    pub unit: Option<Unit>,
+    /// Values are clamped to ± this, model units, where the file says so.
+    pub band: Option<f64>,
+    /// The values: model units and negative inside, also where the file says that it has the opposite sign.
+    pub values: GridValues,
+    /// Sentences about what was left out or read otherwise than it stands.
+    pub warnings: Vec<String>,
+}
+
+/// The values of a lattice, all finite.
+#[derive(Debug, Clone, PartialEq)]
+pub enum GridValues {
+    /// One for each voxel, x fastest, then y.
+    Dense(Vec<f32>),
+    /// In blocks near the surface.
+    Sparse(SparseValues),
+}
+
+/// Values stored in blocks of 8³ voxels where they differ, and in boxes of one value elsewhere.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SparseValues {
+    /// Sorted by the corner's z, then y, then x; no two at one place.
+    pub blocks: Vec<Block>,
+    /// Boxes of one value that is not the background, in an order of their own; none overlaps a block.
+    pub tiles: Vec<Tile>,
+    /// The value of all other voxels.
+    pub background: f32,
+    /// Tiles are at multiples of their side when this is added to them.
+    pub(super) shift: IVec3,
+}
+
+/// 8³ voxels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Block {
+    /// Its first voxel; a multiple of 8 along each axis.
+    pub corner: IVec3,
+    /// The values.
+    pub values: Box<BlockValues>,
+}
+
+/// A box of voxels of one value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tile {
+    /// Its first voxel; a multiple of 8 along each axis.
+    pub corner: IVec3,
+    /// Voxels along x and y: 8, 128 or 4096.
+    pub side: i32,
+    /// Voxels along z, a multiple of `side`.
+    pub length: i32,
+    /// The value.
+    pub value: f32,
+}
+
+impl GridFile {
+    /// The value at a voxel, model units; `None` outside the lattice.
+    pub fn at(&self, voxel: IVec3) -> Option<f32> {
+        let [x, y, z] = voxel.to_array().map(|k| usize::try_from(k).unwrap_or(usize::MAX));
+        let [width, height, depth] = self.dims;
+        if x >= width || y >= height || z >= depth {
+            return None;
+        }
+        match &self.values {
+            GridValues::Dense(values) => values.get(x + width * (y + height * z)).copied(),
+            GridValues::Sparse(values) => Some(values.at(voxel)),
+        }
+    }
+}
+
+impl SparseValues {
+    /// The value at a voxel.
+    pub fn at(&self, voxel: IVec3) -> f32 {
+        // Nothing that a file can hold lies farther out.
+        if voxel.abs().max_element() > 1 << 30 || voxel.min_element() == i32::MIN {
+            return self.background;
+        }
+        let corner = voxel & !(BLOCK_SIDE - 1);
+        let found = self.blocks.binary_search_by(|block| block_order(block.corner).cmp(&block_order(corner)));
+        match found {
+            Ok(n) => {
+                let local = voxel & (BLOCK_SIDE - 1);
+                self.blocks[n].values[(local.x + 8 * local.y + 64 * local.z) as usize]
+            }
+            Err(_) => self.tile_at(voxel).unwrap_or(self.background),
+        }
+    }
+
+    fn tile_at(&self, voxel: IVec3) -> Option<f32> {
+        [8, 128, 4096].into_iter().find_map(|side| {
+            let corner = ((voxel + self.shift) & !(side - 1)) - self.shift;
+            let after = self.tiles.partition_point(|tile| tile_order(tile) <= (side, corner.x, corner.y, corner.z));
+            let tile = self.tiles[..after].last()?;
+            let same_row = (tile.side, tile.corner.x, tile.corner.y) == (side, corner.x, corner.y);
+            (same_row && voxel.z - tile.corner.z < tile.length).then_some(tile.value)
+        })
+    }
+
+    /// Brings blocks and tiles into the order that the look-ups need.
+    pub(super) fn sort(&mut self) {
+        self.blocks.sort_unstable_by_key(|block| block_order(block.corner));
+        self.tiles.sort_unstable_by_key(tile_order);
+    }
+
+    /// Makes `first`, whose coordinates are multiples of 8, the first voxel.
+    pub(super) fn rebase(&mut self, first: IVec3) {
+        self.blocks.iter_mut().for_each(|block| block.corner -= first);
+        self.tiles.iter_mut().for_each(|tile| tile.corner -= first);
+        self.shift += first;
+    }
+
+    /// Turns inside out.
+    pub(super) fn turn(&mut self) {
+        self.blocks.iter_mut().flat_map(|block| block.values.iter_mut()).for_each(|value| *value = -*value);
+        self.tiles.iter_mut().for_each(|tile| tile.value = -tile.value);
+        self.background = -self.background;
+    }
+
+    /// Smallest corner, and the corner after the last voxel, of all blocks and tiles.
+    pub(super) fn bounds(&self) -> Option<[IVec3; 2]> {
+        let blocks = self.blocks.iter().map(|block| [block.corner, block.corner + BLOCK_SIDE]);
+        let tiles = self.tiles.iter().map(Tile::ends);
+        blocks.chain(tiles).reduce(|[a, b], [low, high]| [a.min(low), b.max(high)])
+    }
+}
+
+impl Tile {
+    fn ends(&self) -> [IVec3; 2] {
+        [self.corner, self.corner + IVec3::new(self.side, self.side, self.length)]
+    }
+}
+
+fn block_order(corner: IVec3) -> (i32, i32, i32) {
+    (corner.z, corner.y, corner.x)
+}
+
+fn tile_order(tile: &Tile) -> (i32, i32, i32, i32) {
+    (tile.side, tile.corner.x, tile.corner.y, tile.corner.z)
+}
+
+/// Checks that all values of a dense lattice are finite.
+pub(super) fn all_finite(values: &[f32], dims: [usize; 3]) -> Result<(), GridReadProblem> {
+    let Some(n) = values.iter().position(|value| !value.is_finite()) else { return Ok(()) };
+    let [x, y] = [dims[0].max(1), dims[1].max(1)];
+    let voxel = [n % x, n / x % y, n / (x * y)].map(|k| k as i64);
+    Err(GridReadProblem::NotFinite { voxel, value: values[n] })
+}
+
+/// The one spacing of all axes. Files round their numbers, so a few units in the seventh digit do not count.
+pub(super) fn one_spacing(spacing: [f64; 3]) -> Result<f64, GridReadProblem> {
+    const ROUNDING: f64 = 2e-7;
+    let h = spacing[0];
+    if !spacing.iter().all(|s| s.is_finite() && *s > 0.0) {
+        let found = format!("{} {} {}", spacing[0], spacing[1], spacing[2]);
+        return Err(GridReadProblem::syntax("a spacing above zero along each axis", found));
+    }
+    match spacing.iter().all(|s| (s - h).abs() <= ROUNDING * h) {
+        true => Ok(h),
+        false => Err(GridReadProblem::Anisotropic(spacing)),
+    }
+}
+
+/// Spacing from the three axes of the lattice, each the step from one voxel to the next.
+pub(super) fn spacing_of_axes(axes: [[f64; 3]; 3]) -> Result<f64, GridReadProblem> {
+    let largest = axes.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
+    let straight = (0..3).all(|k| (0..3).all(|j| j == k || axes[k][j].abs() <= 1e-7 * largest));
+    let forward = (0..3).all(|k| axes[k][k] > 0.0);
+    if !(straight && forward) {
+        let words = axes.map(|[x, y, z]| format!("({x}, {y}, {z})"));
+        return Err(GridReadProblem::Turned(words.join(" ")));
+    }
+    one_spacing([axes[0][0], axes[1][1], axes[2][2]])
+}

@@ -1,0 +1,57 @@
+//! From index to model coordinates.
+
+use glam::DVec3;
+
+use super::super::error::{GridReadError, GridReadProblem, shown};
+use super::super::{one_spacing, spacing_of_axes};
+use super::cursor::Cursor;
+
+const WHAT: &str = "the transform";
+/// A map of uniform scale and a translation.
+pub(super) const SCALE_TRANSLATE: &str = "UniformScaleTranslateMap";
+
+/// Position of index (0, 0, 0), and spacing.
+pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<(DVec3, f64), GridReadError> {
+    let start = cursor.at();
+    let name = cursor.text(WHAT)?;
+    let (origin, spacing) = match name.as_str() {
+        "UniformScaleMap" | "ScaleMap" => (DVec3::ZERO, scale(cursor)?),
+        SCALE_TRANSLATE | "ScaleTranslateMap" => (cursor.vector(WHAT)?, scale(cursor)?),
+        "TranslationMap" => (cursor.vector(WHAT)?, Ok(1.0)),
+        "AffineMap" | "UnitaryMap" => affine(cursor)?,
+        other => {
+            let text = format!(
+                "the transform {} is not read here: resample the grid to a scale and a translation",
+                shown(other.as_bytes())
+            );
+            return Err(GridReadProblem::Unsupported(text).at_byte(start));
+        }
+    };
+    let spacing = spacing.map_err(|problem| problem.at_byte(start))?;
+    match origin.is_finite() {
+        true => Ok((origin, spacing)),
+        false => Err(cursor.wrong("a finite translation", origin.to_string())),
+    }
+}
+
+type Spacing = Result<f64, GridReadProblem>;
+
+/// The scale, and four vectors that follow from it.
+fn scale(cursor: &mut Cursor<'_>) -> Result<Spacing, GridReadError> {
+    let scale = cursor.vector(WHAT)?;
+    for _ in 0..4 {
+        cursor.vector(WHAT)?;
+    }
+    Ok(one_spacing(scale.to_array()))
+}
+
+/// Four rows: where the axes lead, and the translation.
+fn affine(cursor: &mut Cursor<'_>) -> Result<(DVec3, Spacing), GridReadError> {
+    let mut row = || -> Result<DVec3, GridReadError> {
+        let row = cursor.vector(WHAT)?;
+        cursor.f64(WHAT)?;
+        Ok(row)
+    };
+    let axes = [row()?.to_array(), row()?.to_array(), row()?.to_array()];
+    Ok((row()?, spacing_of_axes(axes)))
+}
