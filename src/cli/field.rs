@@ -1,13 +1,15 @@
 //! `field EXPR NAME=FILE... -o OUT`: shapes and lattices of values by an expression.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde_json::json;
 
 use super::args::FieldArgs;
 use super::csg::{explain, named_files};
 use super::exit::{Exit, Failure};
-use super::input::{self, Input, is_stream};
+use super::given::{Given, Which};
+use super::input::{self, is_stream};
 use super::length::{BandChoice, Length, Scale, Simplify};
 use super::output::{self, Target};
 use super::report::RunReport;
@@ -15,6 +17,7 @@ use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
 use super::{limits, sdf, solid};
+use crate::field::Sampled;
 use crate::field::language::{self, LanguageError, Node, Value};
 use crate::fit::FitOptions;
 use crate::io::{Colours, GridFormat, Unit, WriteOptions};
@@ -31,29 +34,32 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     let texts = Texts::parse(args, &files)?;
     let paths: Vec<&Path> = files.iter().map(|(_, path)| *path).collect();
     let targets = targets(args, &paths)?;
-    let mut inputs = report.timed("read", |_| input::read_all(&paths, &args.reading, session))?;
-    for (input, (name, _)) in inputs.iter_mut().zip(&files) {
-        input.entry.name = Some(name.to_string());
+    let mut given = report.timed("read", |_| Given::read(&paths, &args.reading, session))?;
+    let of_grids = given.grids.iter().find_map(|grid| grid.file.unit);
+    let unit = input::common_unit(&mut given.meshes, &args.reading, &mut report.warnings).or(of_grids);
+    given.describe(report);
+    for (entry, (name, _)) in report.inputs.iter_mut().zip(&files) {
+        entry.name = Some(name.to_string());
     }
-    let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
-    report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     report.timed("examine", |report| {
         session.progress.stage("examine")?;
-        for (input, entry) in inputs.iter().zip(&mut report.inputs) {
-            entry.validity = Some(input::examine(&input.loaded, session)?);
+        for (which, entry) in given.order.iter().zip(&mut report.inputs) {
+            if let Which::Mesh(n) = *which {
+                entry.validity = Some(input::examine(&given.meshes[n].loaded, session)?);
+            }
         }
         Ok::<(), Failure>(())
     })?;
-    let operands: Vec<Operand> = inputs.iter().map(|input| Operand::Mesh(input.loaded.mesh.clone())).collect();
+    let operands = operands(&given, unit, &mut report.warnings);
     let bounds = operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
     let scale = scale(args, unit, bounds.as_ref())?;
-    let options = options(args, &scale, &inputs)?;
+    let options = options(args, &scale, &given)?;
     report.options = resolved(args, unit, &options, &scale);
     let mut run = Run {
         args,
         texts: &texts,
         scale: &scale,
-        inputs: &inputs,
+        given: &given,
         options: &options,
         session,
         builder: FieldBuilder::new(&operands, &options, &session.progress),
@@ -68,6 +74,29 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     session.clear_bar();
     say(session, report, targets.len(), unit);
     Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+}
+
+/// The operands of the expression. Lattices in another unit than the rest are rescaled, with a line about it.
+fn operands(given: &Given, unit: Option<Unit>, notes: &mut Vec<String>) -> Vec<Operand> {
+    let mut operand = |which: &Which| match *which {
+        Which::Mesh(n) => Operand::Mesh(given.meshes[n].loaded.mesh.clone()),
+        Which::Grid(n) => {
+            let grid = &given.grids[n];
+            let factor = match (grid.file.unit, unit) {
+                (Some(own), Some(unit)) if own != unit => {
+                    let factor = own.metres() / unit.metres();
+                    notes.push(format!(
+                        "{} is in {own}; it was rescaled to {unit} (times {factor})",
+                        grid.entry.path
+                    ));
+                    factor
+                }
+                _ => 1.0,
+            };
+            Operand::Grid(Arc::new(Sampled::of_file(&grid.file, factor)))
+        }
+    };
+    given.order.iter().map(&mut operand).collect()
 }
 
 /// The expressions, parsed.
@@ -168,7 +197,7 @@ fn scale(args: &FieldArgs, unit: Option<Unit>, bounds: Option<&Bounds>) -> Resul
     Ok(Scale { voxel, ..base })
 }
 
-fn options(args: &FieldArgs, scale: &Scale, inputs: &[Input]) -> Result<Options, Failure> {
+fn options(args: &FieldArgs, scale: &Scale, given: &Given) -> Result<Options, Failure> {
     let voxel = match (&args.voxel, scale.voxel) {
         (Some(_), Some(h)) => VoxelSize::Length(h),
         _ => VoxelSize::Along(args.resolution),
@@ -186,7 +215,7 @@ fn options(args: &FieldArgs, scale: &Scale, inputs: &[Input]) -> Result<Options,
     };
     Ok(Options {
         fit: (!args.no_fit).then_some(FitOptions { tolerance, ..usual }),
-        classes: inputs.iter().map(|input| pipeline::classes(input.loaded.colours.as_ref())).collect(),
+        classes: given.painted().map(|(_, colours)| pipeline::classes(colours)).collect(),
         orient: args.orient.into(),
         collapse: !args.no_collapse,
         max_memory: args.max_memory,
@@ -218,7 +247,7 @@ struct Run<'a> {
     args: &'a FieldArgs,
     texts: &'a Texts<'a>,
     scale: &'a Scale,
-    inputs: &'a [Input],
+    given: &'a Given,
     options: &'a Options,
     session: &'a Session,
     builder: FieldBuilder<'a>,
@@ -248,7 +277,7 @@ impl Run<'_> {
     }
 
     fn failure(&self, error: &pipeline::Error) -> Failure {
-        let labels: Vec<String> = self.inputs.iter().map(|input| input.label.clone()).collect();
+        let labels = self.given.labels();
         let unit = self.scale.unit.map(|unit| unit.to_string());
         Failure::pipeline(error, &labels, unit.as_deref(), self.args.voxel.is_some())
     }
@@ -266,8 +295,7 @@ impl Run<'_> {
                 Some(painted(&values, self.args.paint_range, report))
             }
             None => {
-                let operands: Vec<_> =
-                    self.inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
+                let operands: Vec<_> = self.given.painted().collect();
                 pipeline::carry_colours(&outcome, &operands)
             }
         };

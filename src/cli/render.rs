@@ -12,18 +12,20 @@ use super::input::{self, Input, is_stream};
 use super::output::{check_overwrite, write_stream};
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
-use super::slice::{self, Field, GridInput, SliceChoice, failure};
-use crate::io::{self, Format, GridFormat};
+use super::given::{Given, Which};
+use super::slice::{self, Field, SliceChoice, failure};
+use crate::io;
 use crate::picture::{EdgeDrawing, Image, Painted, RenderOptions, View, render, render_pair};
 
 /// Draws one mesh or slice, or two on one sheet.
 pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let paths: Vec<&Path> = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
     check_overwrite(&args.output, args.force, &paths)?;
-    let mut inputs = report.timed("read", |_| Inputs::read(&paths, args, session))?;
+    let mut inputs = report.timed("read", |_| Given::read(&paths, &args.reading, session))?;
     // Two meshes share one camera, so they must share one unit.
     input::common_unit(&mut inputs.meshes, &args.reading, &mut report.warnings);
     inputs.describe(report);
+    let inputs = Inputs(inputs);
     let options = options(args);
     let choice = args.slice.unwrap_or_default();
     let slices = inputs.slices(args);
@@ -43,13 +45,13 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
     let label = if is_stream(&args.output) { "standard output".into() } else { args.output.display().to_string() };
     session.clear_bar();
     session.say(&format!("{label}: {} x {} pixels", image.width, image.height));
-    if options.defects && report.slices.len() < inputs.order.len() {
+    if options.defects && report.slices.len() < inputs.0.order.len() {
         session.say(
             "open edges red, edges of more than two triangles magenta, intersecting triangles yellow, inner sides rust red",
         );
     }
     for slice in &report.slices {
-        session.say(&slice.words(inputs.unit_of(&slice.path).as_deref()));
+        session.say(&slice.words(inputs.0.unit_of(&slice.path).as_deref()));
     }
     for warning in &report.warnings {
         session.say(&format!("note: {warning}"));
@@ -66,62 +68,12 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
 }
 
 /// What is drawn.
-struct Inputs {
-    meshes: Vec<Input>,
-    grids: Vec<GridInput>,
-    order: Vec<Which>,
-}
-
-/// A mesh or a grid, by number.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Which {
-    Mesh(usize),
-    Grid(usize),
-}
+struct Inputs(Given);
 
 impl Inputs {
-    fn read(paths: &[&Path], args: &RenderArgs, session: &Session) -> Result<Self, Failure> {
-        input::check_streams(paths)?;
-        session.progress.stage("read")?;
-        let mut inputs = Self { meshes: Vec::new(), grids: Vec::new(), order: Vec::new() };
-        for path in paths {
-            let bytes = input::bytes_of(path, session)?;
-            if is_grid(&bytes, path, args) {
-                inputs.order.push(Which::Grid(inputs.grids.len()));
-                inputs.grids.push(slice::grid_of(path, &bytes)?);
-            } else {
-                inputs.order.push(Which::Mesh(inputs.meshes.len()));
-                inputs.meshes.push(input::mesh_of(path, &bytes, &args.reading, session)?);
-            }
-        }
-        Ok(inputs)
-    }
-
-    /// Fills in what the report says of the inputs.
-    fn describe(&self, report: &mut RunReport) {
-        let entry = |which: &Which| match *which {
-            Which::Mesh(n) => self.meshes[n].entry.clone(),
-            Which::Grid(n) => self.grids[n].entry.clone(),
-        };
-        report.inputs = self.order.iter().map(entry).collect();
-        let notes = self.grids.iter().flat_map(|grid| &grid.file.warnings).cloned();
-        report.warnings.extend(notes);
-        let nowhere = self.grids.iter().filter(|grid| !grid.file.format.says_where());
-        report.warnings.extend(nowhere.map(|grid| {
-            let (path, format) = (&grid.entry.path, &grid.entry.format);
-            format!("{path}: {format} does not say where the voxels lie; their spacing was taken as 1")
-        }));
-    }
-
     /// Whether slices are drawn: of the grids, or else of the meshes where that was asked for.
     fn slices(&self, args: &RenderArgs) -> bool {
-        !self.grids.is_empty() || args.slice.is_some()
-    }
-
-    fn unit_of(&self, path: &str) -> Option<String> {
-        let grids = self.grids.iter().map(|grid| (&grid.entry.path, grid.file.unit));
-        let mut all = grids.chain(self.meshes.iter().map(|mesh| (&mesh.label, mesh.loaded.unit)));
-        all.find(|(label, _)| *label == path).and_then(|(_, unit)| unit).map(|unit| unit.to_string())
+        !self.0.grids.is_empty() || args.slice.is_some()
     }
 
     /// The images in the order of the inputs.
@@ -133,39 +85,33 @@ impl Inputs {
         report: &mut RunReport,
     ) -> Result<Vec<Image>, Failure> {
         let Some(choice) = choice else {
-            return surfaces(&self.meshes.iter().collect::<Vec<_>>(), options, session);
+            return surfaces(&self.0.meshes.iter().collect::<Vec<_>>(), options, session);
         };
-        let sliced: Vec<Which> = match self.grids.is_empty() {
-            true => self.order.clone(),
-            false => self.order.iter().copied().filter(|which| matches!(which, Which::Grid(_))).collect(),
+        let sliced: Vec<Which> = match self.0.grids.is_empty() {
+            true => self.0.order.clone(),
+            false => self.0.order.iter().copied().filter(|which| matches!(which, Which::Grid(_))).collect(),
         };
         let field = |which: &Which| match *which {
-            Which::Mesh(n) => Field::of_mesh(&self.meshes[n], session),
-            Which::Grid(n) => Ok(Field::of_grid(&self.grids[n])),
+            Which::Mesh(n) => Field::of_mesh(&self.0.meshes[n], session),
+            Which::Grid(n) => Ok(Field::of_grid(&self.0.grids[n])),
         };
         let fields: Vec<Field<'_>> = sliced.iter().map(field).collect::<Result<_, _>>()?;
         let size = [options.width, options.height];
         let slices = slice::draw(&fields, choice, size, session, &mut report.warnings)?;
         let mut slices = slices.into_iter();
         let mut images = Vec::new();
-        for which in &self.order {
+        for which in &self.0.order {
             match (sliced.contains(which).then(|| slices.next()).flatten(), *which) {
                 (Some((image, entry)), _) => {
                     images.push(image);
                     report.slices.push(entry);
                 }
-                (None, Which::Mesh(n)) => images.extend(surfaces(&[&self.meshes[n]], options, session)?),
+                (None, Which::Mesh(n)) => images.extend(surfaces(&[&self.0.meshes[n]], options, session)?),
                 (None, Which::Grid(_)) => return Err(Failure::internal("a grid was not drawn")),
             }
         }
         Ok(images)
     }
-}
-
-/// A grid by what its bytes begin as, or by its name where they are no mesh either.
-fn is_grid(bytes: &[u8], path: &Path, args: &RenderArgs) -> bool {
-    let named = || !is_stream(path) && GridFormat::from_path(path).is_some() && Format::detect(bytes, None).is_none();
-    args.reading.in_format.is_none() && (GridFormat::from_content(bytes).is_some() || named())
 }
 
 /// One mesh, or two by one camera.

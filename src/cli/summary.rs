@@ -85,6 +85,9 @@ fn described(input: &InputEntry) -> String {
     if let Some(name) = &input.name {
         text = format!("{name} = {text}");
     }
+    if input.parts.is_empty() {
+        return text + "values over a lattice";
+    }
     let triangles = input.validity.as_ref().map_or(0, |validity| validity.triangles);
     text.push_str(&words::plural(triangles, "triangle"));
     if input.parts.len() > 1 {

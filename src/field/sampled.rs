@@ -6,6 +6,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::{Ball, Extent, Field, Range, Sample};
+use crate::io::{GridFile, GridValues, SparseValues};
 use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot, brick_of};
 use crate::mesh::Bounds;
 use crate::progress::{Progress, Stopped};
@@ -41,6 +42,20 @@ impl Sampled {
         sampled.extent = Extent::of(boxes);
         sampled.ranges = parts.into_iter().map(|part| part.0).collect();
         sampled
+    }
+
+    /// The field of a file, all its lengths times `factor`.
+    pub fn of_file(file: &GridFile, factor: f64) -> Self {
+        let dims = IVec3::from(file.dims.map(|count| count as i32));
+        let lattice = Lattice { origin: file.origin * factor, h: file.spacing * factor, dims };
+        let scaled = |value: f32| (f64::from(value) * factor) as f32;
+        let mut grid = match &file.values {
+            GridValues::Dense(values) => dense(values, dims),
+            GridValues::Sparse(values) => sparse(values),
+        };
+        grid.values.par_iter_mut().flatten().for_each(|value| *value = scaled(*value));
+        (grid.inside, grid.outside) = (scaled(grid.inside), scaled(grid.outside));
+        Self::new(grid, lattice)
     }
 
     /// The lattice.
@@ -218,6 +233,17 @@ fn along(grid: &Grid<f32>, brick: IVec3, axis: usize, weights: &[f32]) -> [f32; 
         }
     }
     values
+}
+
+/// A grid from blocks; what lies between them has the sign of its tile, and the value of the background.
+fn sparse(values: &SparseValues) -> Grid<f32> {
+    let far = values.background.abs();
+    let inside = |brick: IVec3| values.at(brick * BRICK) < 0.0;
+    let stored = values.blocks.iter().map(|block| block.corner / BRICK);
+    let bricks = Bricks::with_classes(stored, |brick| inside(brick + IVec3::X));
+    // The blocks are sorted as the bricks are.
+    let values = values.blocks.iter().map(|block| *block.values).collect();
+    Grid { bricks: Arc::new(bricks), values, inside: -far, outside: far }
 }
 
 /// A grid from the values of all voxels of a lattice, x fastest, then y.

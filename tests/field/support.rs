@@ -8,7 +8,8 @@ use meshwright::field::blend::{blend_difference, blend_intersection, blend_union
 use meshwright::field::blob::{self, BlobOptions, blob_difference, blob_intersection, blob_union};
 use meshwright::field::filter::{Adaptive, FilterOptions, Kernel, Sampling, SmoothOptions, filtered, smooth};
 use meshwright::field::{
-    Body, FillOptions, Level, MeshField, PointField, Sampled, Shared, Solid, fill, level, material, scattered,
+    Body, FillOptions, Level, MeshField, Placement, PointField, Sampled, Shared, Solid, fill, level, material, placed,
+    scattered,
 };
 use meshwright::lattice::Lattice;
 use meshwright::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
@@ -92,6 +93,9 @@ pub fn all() -> Vec<(&'static str, Shared)> {
         ("filtered adaptively", filter(torus(), adaptive)),
         ("filtered on a grid", filter(block(), regular)),
         ("filtered twice", filter(filter(block(), options), options)),
+        ("moved", placed(block(), Placement::moved(DVec3::new(0.1, 0.2, -0.3)))),
+        ("larger", placed(torus(), Placement::scaled(1.2, DVec3::X * 0.3))),
+        ("turned", placed(block(), Placement::turned(1, 0.7, DVec3::Y * 0.2))),
         ("smoothed", smooth(block(), ball(), &SmoothOptions { depth: 0.2, radius: 0.2, sampling: mirrored })),
     ]
 }

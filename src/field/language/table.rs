@@ -29,6 +29,10 @@ pub enum Function {
     BlobIntersection,
     BlobDifference,
     Compare,
+    Move,
+    Scale,
+    Turn,
+    Align,
     Points,
     Sphere,
     Box,
@@ -276,7 +280,25 @@ pub const FUNCTIONS: [Signature; Function::Levels as usize + 1] = [
     ),
     with(of_fields(Function::Compare, "compare", &["a", "b"], "no shape: how much more a is there than b, from -1 to 1"), BLOB),
     with(
-        of_fields(Function::Points, "points", &[], "the distance to random points in the box of the operands"),
+        of_fields(Function::Move, "move", &["a"], "a elsewhere"),
+        &[CENTRE[0], CENTRE[1], CENTRE[2]],
+    ),
+    with(
+        of_fields(Function::Scale, "scale", &["a"], "a made larger about the middle of its box, or smaller"),
+        &[required("factor", Kind::Number(1e-6, 1e6))],
+    ),
+    with(
+        of_fields(
+            Function::Turn,
+            "turn",
+            &["a"],
+            "a turned about an axis through the middle of its box, counterclockwise seen against the axis",
+        ),
+        &[required("axis", Kind::Axis), required("degrees", Kind::Number(-360.0, 360.0))],
+    ),
+    of_fields(Function::Align, "align", &["a", "b"], "a moved and scaled: the middle and the longest side of its box become those of b's"),
+    with(
+        of_fields(Function::Points, "points", &[], "the distance to random points in the box of the operands and of the bodies before"),
         &[
             required("count", Kind::Count(1, 10_000_000)),
             default("seed", Kind::Count(0, MOST_EXACT), Preset::Quantity(0.0, "")),

@@ -13,8 +13,8 @@ use crate::field::blob::{self, BlobOptions};
 use crate::field::filter::{Adaptive, FilterOptions, Kernel, Sampling, SmoothOptions, WIDEST, filtered, smooth};
 use crate::field::language::{Call, Function, Node, NodeKind, Place, Value};
 use crate::field::{
-    Body, Extent, Field, FillOptions, MeshField, PointField, Sampled, Shared, Solid, blur_band, blurred, fill, material,
-    scattered,
+    Body, Extent, Field, FillOptions, MeshField, Placement, PointField, Sampled, Shared, Solid, blur_band, blurred, fill,
+    material, placed, scattered,
 };
 use crate::lattice::Lattice;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, validate};
@@ -41,6 +41,8 @@ pub struct Built {
     pub field: Shared,
     /// The box around all operands, model units; `None` without operands.
     pub around: Option<Bounds>,
+    /// The box around all operands and bodies with an end, model units; `None` without any.
+    pub parts: Option<Bounds>,
     /// How each operand became a field.
     pub operands: Vec<OperandReport>,
     pub(super) sources: Sources,
@@ -73,6 +75,7 @@ pub struct FieldBuilder<'a> {
     options: &'a Options,
     progress: &'a Progress,
     around: Option<Bounds>,
+    parts: Option<Bounds>,
     /// The operands that are fields already, by number and kind.
     made: BTreeMap<(usize, &'static str), Shared>,
     sources: Sources,
@@ -82,7 +85,7 @@ impl<'a> FieldBuilder<'a> {
     /// Ready to make fields of `operands`. A mesh that is no valid solid will be repaired first, as `options` say.
     pub fn new(operands: &'a [Operand], options: &'a Options, progress: &'a Progress) -> Self {
         let around = operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
-        Self { operands, options, progress, around, made: BTreeMap::new(), sources: Sources::default() }
+        Self { operands, options, progress, around, parts: around, made: BTreeMap::new(), sources: Sources::default() }
     }
 
     /// The field that `tree` says.
@@ -92,7 +95,7 @@ impl<'a> FieldBuilder<'a> {
     pub fn build(&mut self, tree: &Node<Value>) -> Result<Built, Error> {
         let field = self.node(tree)?;
         let operands = self.made.keys().map(|&(operand, made)| OperandReport { operand, made }).collect();
-        Ok(Built { field, around: self.around, operands, sources: self.sources.clone() })
+        Ok(Built { field, around: self.around, parts: self.parts, operands, sources: self.sources.clone() })
     }
 
     fn node(&mut self, node: &Node<Value>) -> Result<Shared, Error> {
@@ -146,8 +149,9 @@ impl<'a> FieldBuilder<'a> {
             F::BlobIntersection => Some(blob::blob_intersection(fields.clone(), blobs)),
             F::BlobDifference => pair().map(|(a, b)| blob::blob_difference(a, vec![b], blobs)),
             F::Compare => pair().map(|(a, b)| blob::compare(a, b, blobs)),
+            F::Move | F::Scale | F::Turn | F::Align => Some(moved(call, &fields)?),
             F::Points => Some(self.points(call)?),
-            F::Sphere | F::Box | F::Cylinder | F::Torus | F::Plane => Some(body(call)),
+            F::Sphere | F::Box | F::Cylinder | F::Torus | F::Plane => Some(self.body(call)),
             F::Exact | F::Robust | F::Levels => None,
         };
         // The parser gives each call as many fields as it takes.
@@ -278,13 +282,38 @@ impl<'a> FieldBuilder<'a> {
         Ok(Arc::new(Sampled::new(grid, lattice)))
     }
 
+    fn body(&mut self, call: &Call<Value>) -> Shared {
+        let field = body(call);
+        let both = self.parts.iter().chain(&field.extent().bounds()).copied().reduce(|a, b| a.union(&b));
+        self.parts = both;
+        field
+    }
+
     fn points(&self, call: &Call<Value>) -> Result<Shared, Error> {
-        let bounds = self.around.ok_or_else(|| Error::NothingEnclosed {
-            reason: "points are scattered in the box of the operands, and there are none".into(),
+        let bounds = self.parts.ok_or_else(|| Error::NothingEnclosed {
+            reason: "points are scattered in the box of the operands and bodies before them, and there are none".into(),
         })?;
         let count = call.count("count").unwrap_or_default() as usize;
         Ok(Arc::new(PointField::new(&scattered(count, call.count("seed").unwrap_or_default(), &bounds))))
     }
+}
+
+/// A field elsewhere, larger or turned.
+fn moved(call: &Call<Value>, fields: &[Shared]) -> Result<Shared, Error> {
+    let extent = |k: usize| fields.get(k).and_then(|field| field.extent().bounds()).ok_or_else(super::endless);
+    let middle = || extent(0).map(|bounds| (bounds.min + bounds.max) / 2.0);
+    let length = |name: &str| call.length(name).unwrap_or_default();
+    let number = |name: &str| call.number(name).unwrap_or(1.0);
+    let placement = match call.function {
+        Function::Scale => Placement::scaled(number("factor"), middle()?),
+        Function::Turn => {
+            let axis = call.axis("axis").map_or(2, |axis| axis.number());
+            Placement::turned(axis, number("degrees").to_radians(), middle()?)
+        }
+        Function::Align => Placement::fitted(&extent(0)?, &extent(1)?),
+        _ => Placement::moved(DVec3::new(length("x"), length("y"), length("z"))),
+    };
+    Ok(placed(fields[0].clone(), placement))
 }
 
 fn by_radii((a, b): (Shared, Shared), t: f64) -> Result<Shared, Error> {

@@ -128,8 +128,8 @@ pub fn field_grid(
 ) -> Result<DistanceOutcome, Error> {
     let mut stages = stages::Stages::new(progress);
     stages.begin("field")?;
-    let shape = built.field.extent().or(Extent::of(built.around));
-    let extent = shape.bounds().or(built.around).ok_or_else(endless)?;
+    let shape = built.field.extent().or(Extent::of(built.parts));
+    let extent = shape.bounds().or(built.parts).ok_or_else(endless)?;
     let h = built.spacing(&extent, options.voxel)?;
     let mut lattice = prepare::lattice(&extent, VoxelSize::Length(h))?;
     let room = (band.unwrap_or(0.0) / h).ceil();

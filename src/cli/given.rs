@@ -1,0 +1,98 @@
+//! Inputs that may be meshes or lattices of values.
+
+use std::path::Path;
+
+use super::args::InputArgs;
+use super::exit::Failure;
+use super::input::{self, Input, is_stream};
+use super::report::RunReport;
+use super::session::Session;
+use super::slice::{self, GridInput};
+use crate::io::{Colours, Format, GridFormat};
+use crate::mesh::TriMesh;
+
+/// Files as read.
+pub struct Given {
+    /// The meshes.
+    pub meshes: Vec<Input>,
+    /// The lattices.
+    pub grids: Vec<GridInput>,
+    /// What was given, in the order given.
+    pub order: Vec<Which>,
+}
+
+/// A mesh or a grid, by number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Which {
+    /// A mesh.
+    Mesh(usize),
+    /// A grid.
+    Grid(usize),
+}
+
+impl Given {
+    /// Reads every path; a grid is known by its content.
+    pub fn read(paths: &[&Path], args: &InputArgs, session: &Session) -> Result<Self, Failure> {
+        input::check_streams(paths)?;
+        session.progress.stage("read")?;
+        let mut inputs = Self { meshes: Vec::new(), grids: Vec::new(), order: Vec::new() };
+        for path in paths {
+            let bytes = input::bytes_of(path, session)?;
+            if is_grid(&bytes, path, args) {
+                inputs.order.push(Which::Grid(inputs.grids.len()));
+                inputs.grids.push(slice::grid_of(path, &bytes)?);
+            } else {
+                inputs.order.push(Which::Mesh(inputs.meshes.len()));
+                inputs.meshes.push(input::mesh_of(path, &bytes, args, session)?);
+            }
+        }
+        Ok(inputs)
+    }
+
+    /// Fills in what the report says of the inputs.
+    pub fn describe(&self, report: &mut RunReport) {
+        let entry = |which: &Which| match *which {
+            Which::Mesh(n) => self.meshes[n].entry.clone(),
+            Which::Grid(n) => self.grids[n].entry.clone(),
+        };
+        report.inputs = self.order.iter().map(entry).collect();
+        let notes = self.grids.iter().flat_map(|grid| &grid.file.warnings).cloned();
+        report.warnings.extend(notes);
+        let nowhere = self.grids.iter().filter(|grid| !grid.file.format.says_where());
+        report.warnings.extend(nowhere.map(|grid| {
+            let (path, format) = (&grid.entry.path, &grid.entry.format);
+            format!("{path}: {format} does not say where the voxels lie; their spacing was taken as 1")
+        }));
+    }
+
+    /// Each input's mesh and colours; a grid has neither.
+    pub fn painted(&self) -> impl Iterator<Item = (&TriMesh, Option<&Colours>)> {
+        const NOTHING: &TriMesh = &TriMesh { positions: Vec::new(), triangles: Vec::new() };
+        self.order.iter().map(|which| match *which {
+            Which::Mesh(n) => (&self.meshes[n].loaded.mesh, self.meshes[n].loaded.colours.as_ref()),
+            Which::Grid(_) => (NOTHING, None),
+        })
+    }
+
+    /// What the inputs are called.
+    pub fn labels(&self) -> Vec<String> {
+        let label = |which: &Which| match *which {
+            Which::Mesh(n) => self.meshes[n].label.clone(),
+            Which::Grid(n) => self.grids[n].entry.path.clone(),
+        };
+        self.order.iter().map(label).collect()
+    }
+
+    /// The unit of the input of this name.
+    pub fn unit_of(&self, path: &str) -> Option<String> {
+        let grids = self.grids.iter().map(|grid| (&grid.entry.path, grid.file.unit));
+        let mut all = grids.chain(self.meshes.iter().map(|mesh| (&mesh.label, mesh.loaded.unit)));
+        all.find(|(label, _)| *label == path).and_then(|(_, unit)| unit).map(|unit| unit.to_string())
+    }
+}
+
+/// A grid by what its bytes begin as, or by its name where they are no mesh either.
+fn is_grid(bytes: &[u8], path: &Path, args: &InputArgs) -> bool {
+    let named = || !is_stream(path) && GridFormat::from_path(path).is_some() && Format::detect(bytes, None).is_none();
+    args.in_format.is_none() && (GridFormat::from_content(bytes).is_some() || named())
+}
