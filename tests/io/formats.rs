@@ -1,7 +1,7 @@
 //! What each reader makes of the freedoms of its format.
 
 use glam::DVec3;
-use meshwright::io::{Format, Loaded, Unit, read, read_bytes};
+use meshwright::io::{Format, GridFormat, Loaded, Unit, read, read_bytes, read_grid};
 
 use crate::support::{assert_sound, corners, zipped};
 
@@ -30,13 +30,19 @@ fn every_seed_of_the_fuzzer_is_read_and_detected() {
             if path.extension().is_some_and(|e| e == "model") {
                 continue;
             }
+            if let Some(format) = GridFormat::from_path(&path) {
+                let grid = read_grid(&path).unwrap_or_else(|error| panic!("{error}"));
+                assert_eq!(grid.format, format, "{}", path.display());
+                count += 1;
+                continue;
+            }
             let loaded = read(&path).unwrap_or_else(|error| panic!("{error}"));
             assert_sound(&loaded);
             assert_eq!(Some(loaded.format), Format::from_path(&path), "{}", path.display());
             count += 1;
         }
     }
-    assert!(count >= 17, "{count}");
+    assert!(count >= 23, "{count}");
 }
 
 #[test]
