@@ -11,8 +11,8 @@ use super::choices::{Defect, EdgeChoice, MethodChoice, OrientChoice, SideChoice,
 use super::devices::DevicesArgs;
 use super::length::{BandChoice, Length, Simplify, parse_duration, parse_size};
 use super::render::{ViewChoice, parse_view};
-use crate::field::language;
 use super::slice::SliceChoice;
+use crate::field::language;
 use crate::io::{Format, GridFormat, Unit};
 
 const EXIT_CODES: &str = "\

@@ -22,8 +22,8 @@ use crate::field::language::{self, LanguageError, Node, Value};
 use crate::fit::FitOptions;
 use crate::io::{Colours, GridFormat, Unit, WriteOptions};
 use crate::mesh::Bounds;
-use crate::pipeline::{self, Built, FieldBuilder, FieldReport, Operand, Options, VoxelSize};
 use crate::picture::ramp_colour;
+use crate::pipeline::{self, Built, FieldBuilder, FieldReport, Operand, Options, VoxelSize};
 
 /// Values in a lattice reach so far from the surface, voxels, unless it is said otherwise.
 const USUAL_BAND: f64 = 4.0;
@@ -85,10 +85,7 @@ fn operands(given: &Given, unit: Option<Unit>, notes: &mut Vec<String>) -> Vec<O
             let factor = match (grid.file.unit, unit) {
                 (Some(own), Some(unit)) if own != unit => {
                     let factor = own.metres() / unit.metres();
-                    notes.push(format!(
-                        "{} is in {own}; it was rescaled to {unit} (times {factor})",
-                        grid.entry.path
-                    ));
+                    notes.push(format!("{} is in {own}; it was rescaled to {unit} (times {factor})", grid.entry.path));
                     factor
                 }
                 _ => 1.0,
@@ -158,7 +155,9 @@ impl Place {
 fn targets(args: &FieldArgs, paths: &[&Path]) -> Result<Vec<Place>, Failure> {
     let frames = args.frames.unwrap_or(1);
     if frames > 1 && is_stream(&args.output) {
-        return Err(Failure::usage("a sequence cannot go to standard output").hint("a name after -o, such as morph.ply"));
+        return Err(
+            Failure::usage("a sequence cannot go to standard output").hint("a name after -o, such as morph.ply")
+        );
     }
     let place = |number: u32| {
         let path = if frames > 1 { numbered(&args.output, number, frames) } else { args.output.clone() };
@@ -299,10 +298,8 @@ impl Run<'_> {
                 pipeline::carry_colours(&outcome, &operands)
             }
         };
-        let target = Target {
-            path: target.path.clone(),
-            options: WriteOptions { unit: self.scale.unit, ..target.options },
-        };
+        let target =
+            Target { path: target.path.clone(), options: WriteOptions { unit: self.scale.unit, ..target.options } };
         solid::write(&outcome.mesh, paint.as_ref(), &target, self.session, report)
     }
 
@@ -332,10 +329,13 @@ fn length(value: f64, suffix: &str, scale: &Scale) -> Result<f64, String> {
     let length: Length = format!("{}{suffix}", value.abs()).parse().map_err(|e| format!("{e}"))?;
     let unmeasured = scale.diagonal <= 0.0 && matches!(length, Length::Percent(_));
     if unmeasured || scale.voxel.is_none() && matches!(length, Length::Voxels(_)) {
-        return Err(format!("`{length}` cannot be measured: no file is given{}", match length {
-            Length::Voxels(_) => ", and no --voxel",
-            _ => "",
-        }));
+        return Err(format!(
+            "`{length}` cannot be measured: no file is given{}",
+            match length {
+                Length::Voxels(_) => ", and no --voxel",
+                _ => "",
+            }
+        ));
     }
     length.resolve(scale).map(|length| length.copysign(value)).map_err(|e| e.to_string())
 }

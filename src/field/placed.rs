@@ -76,10 +76,8 @@ impl Field for Placed {
     fn samples(&self, points: &[DVec3], samples: &mut [Sample]) {
         self.field.samples(&self.places(points), samples);
         for sample in samples {
-            *sample = Sample {
-                value: sample.value * self.placement.scale,
-                gradient: self.placement.turn * sample.gradient,
-            };
+            *sample =
+                Sample { value: sample.value * self.placement.scale, gradient: self.placement.turn * sample.gradient };
         }
     }
 
@@ -94,7 +92,8 @@ impl Field for Placed {
 
     fn extent(&self) -> Extent {
         let Extent::Within(bounds) = self.field.extent() else { return self.field.extent() };
-        let corner = |k: u32| DVec3::from([0, 1, 2].map(|axis| [bounds.min, bounds.max][(k >> axis & 1) as usize][axis]));
+        let corner =
+            |k: u32| DVec3::from([0, 1, 2].map(|axis| [bounds.min, bounds.max][(k >> axis & 1) as usize][axis]));
         Extent::of(Bounds::of((0..8).map(|k| self.placement.forth(corner(k)))))
     }
 }

@@ -97,9 +97,7 @@ impl Eight {
     /// The least of the squares that are of interest.
     #[inline(always)]
     fn least(&self, squares: &Lane) -> Option<f32> {
-        let counting = |half: usize| {
-            Vec4::select(squares[half].cmple(self.best[half]), squares[half], Vec4::INFINITY)
-        };
+        let counting = |half: usize| Vec4::select(squares[half].cmple(self.best[half]), squares[half], Vec4::INFINITY);
         let least = counting(0).min(counting(1)).min_element();
         (least < f32::INFINITY).then_some(least)
     }

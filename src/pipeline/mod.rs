@@ -22,9 +22,7 @@ pub use distance::{
     DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, distance,
     plan_distance,
 };
-pub use field::{
-    Built, FieldBuilder, FieldReport, Operand, OperandReport, field_grid, field_surface, field_values,
-};
+pub use field::{Built, FieldBuilder, FieldReport, Operand, OperandReport, field_grid, field_surface, field_values};
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
 pub use plan::{plan, plan_canals, plan_morphology, plan_thicken};
 pub use report::{LdiReport, Report, StageTime, ThinReport};
@@ -33,8 +31,8 @@ pub use thickness::{LengthsReport, ThicknessReport, thickness};
 
 use rayon::prelude::*;
 
-use crate::field::filter::FilterError;
 use crate::contour::{ContourOptions, contour};
+use crate::field::filter::FilterError;
 use crate::fit::{Facets, FitOptions, fit};
 use crate::lattice::Lattice;
 use crate::ldi::{Evidence, Expression, Spans, spans};

@@ -228,7 +228,11 @@ pub const FUNCTIONS: [Signature; Function::Levels as usize + 1] = [
         &[required("amount", SHARE)],
     ),
     listed(
-        of_many(Function::Material, "material", "no shape: a value on each shape, passing smoothly from one to the other between them"),
+        of_many(
+            Function::Material,
+            "material",
+            "no shape: a value on each shape, passing smoothly from one to the other between them",
+        ),
         List::Values,
     ),
     with(
@@ -278,11 +282,11 @@ pub const FUNCTIONS: [Signature; Function::Levels as usize + 1] = [
         ),
         BLOB,
     ),
-    with(of_fields(Function::Compare, "compare", &["a", "b"], "no shape: how much more a is there than b, from -1 to 1"), BLOB),
     with(
-        of_fields(Function::Move, "move", &["a"], "a elsewhere"),
-        &[CENTRE[0], CENTRE[1], CENTRE[2]],
+        of_fields(Function::Compare, "compare", &["a", "b"], "no shape: how much more a is there than b, from -1 to 1"),
+        BLOB,
     ),
+    with(of_fields(Function::Move, "move", &["a"], "a elsewhere"), &[CENTRE[0], CENTRE[1], CENTRE[2]]),
     with(
         of_fields(Function::Scale, "scale", &["a"], "a made larger about the middle of its box, or smaller"),
         &[required("factor", Kind::Number(1e-6, 1e6))],
@@ -296,9 +300,19 @@ pub const FUNCTIONS: [Signature; Function::Levels as usize + 1] = [
         ),
         &[required("axis", Kind::Axis), required("degrees", Kind::Number(-360.0, 360.0))],
     ),
-    of_fields(Function::Align, "align", &["a", "b"], "a moved and scaled: the middle and the longest side of its box become those of b's"),
+    of_fields(
+        Function::Align,
+        "align",
+        &["a", "b"],
+        "a moved and scaled: the middle and the longest side of its box become those of b's",
+    ),
     with(
-        of_fields(Function::Points, "points", &[], "the distance to random points in the box of the operands and of the bodies before"),
+        of_fields(
+            Function::Points,
+            "points",
+            &[],
+            "the distance to random points in the box of the operands and of the bodies before",
+        ),
         &[
             required("count", Kind::Count(1, 10_000_000)),
             default("seed", Kind::Count(0, MOST_EXACT), Preset::Quantity(0.0, "")),

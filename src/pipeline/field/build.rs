@@ -13,8 +13,8 @@ use crate::field::blob::{self, BlobOptions};
 use crate::field::filter::{Adaptive, FilterOptions, Kernel, Sampling, SmoothOptions, WIDEST, filtered, smooth};
 use crate::field::language::{Call, Function, Node, NodeKind, Place, Value};
 use crate::field::{
-    Body, Extent, Field, FillOptions, MeshField, Placement, PointField, Sampled, Shared, Solid, blur_band, blurred, fill,
-    material, placed, scattered,
+    Body, Extent, Field, FillOptions, MeshField, Placement, PointField, Sampled, Shared, Solid, blur_band, blurred,
+    fill, material, placed, scattered,
 };
 use crate::lattice::Lattice;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, validate};
@@ -173,9 +173,7 @@ impl<'a> FieldBuilder<'a> {
         }
         let outcome = repair(mesh, &self.own_options(operand)?, self.progress)?;
         let origins = outcome.sources.iter().map(|source| match *source {
-            TriangleSource::Operand { triangle, .. } => {
-                TriangleSource::Operand { operand: operand as u32, triangle }
-            }
+            TriangleSource::Operand { triangle, .. } => TriangleSource::Operand { operand: operand as u32, triangle },
             TriangleSource::Closed => TriangleSource::Closed,
         });
         let source = self.sources.add(&outcome.mesh, origins);

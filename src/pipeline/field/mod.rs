@@ -104,8 +104,7 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         stages: stages.finish(),
         ..Report::default()
     };
-    let account =
-        FieldReport { operands: built.operands.clone(), made, volume: volume(&surface.mesh), fit: fitted };
+    let account = FieldReport { operands: built.operands.clone(), made, volume: volume(&surface.mesh), fit: fitted };
     Ok((Outcome { mesh: surface.mesh, sources: origins, lattice, report }, account))
 }
 
@@ -191,4 +190,3 @@ impl From<FilterError> for Error {
         Self::Filter(error)
     }
 }
-
