@@ -2,6 +2,8 @@
 
 #[path = "cli/compare.rs"]
 mod compare;
+#[path = "cli/fields.rs"]
+mod fields;
 #[path = "cli/files.rs"]
 mod files;
 #[path = "cli/sdf.rs"]

@@ -20,7 +20,7 @@ use super::{limits, sdf, solid};
 use crate::field::Sampled;
 use crate::field::language::{self, LanguageError, Node, Value};
 use crate::fit::FitOptions;
-use crate::io::{Colours, GridFormat, Unit, WriteOptions};
+use crate::io::{Colours, Format, GridFormat, Unit, WriteOptions};
 use crate::mesh::Bounds;
 use crate::picture::ramp_colour;
 use crate::pipeline::{self, Built, FieldBuilder, FieldReport, Operand, Options, VoxelSize};
@@ -169,6 +169,11 @@ fn targets(args: &FieldArgs, paths: &[&Path]) -> Result<Vec<Place>, Failure> {
             Some(format) => {
                 output::check_overwrite(&path, args.writing.force, paths)?;
                 Ok(Place::Grid(path, format))
+            }
+            None if args.writing.out_format.is_none() && Format::from_path(&path).is_none() && !is_stream(&path) => {
+                Err(Failure::usage(format!("the name {} does not tell its format", path.display())).hint(
+                    "end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or for a lattice in .vti, .nrrd, .npy or .vdb",
+                ))
             }
             None => Target::new(&path, &args.writing, paths).map(Place::Mesh),
         }

@@ -7,6 +7,18 @@
 //!
 //! A [`Field`] is asked for packets of points, and for the range of its values within a ball. By ranges [`fill`] finds the
 //! bricks that hold a level without looking at the others, whatever the field is made of.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use glam::DVec3;
+//! use meshwright::field::{Body, Field, Shared, Solid, algebra, blend};
+//!
+//! let ball = |x| -> Shared {
+//!     Arc::new(Body { solid: Solid::Sphere { radius: 1.0 }, centre: DVec3::new(x, 0.0, 0.0), axis: 2 })
+//! };
+//! let pair = blend::blend_union(ball(-0.8), algebra::offset(ball(0.8), 0.1), 0.5);
+//! assert!(pair.value(DVec3::ZERO) < 0.0);
+//! ```
 
 pub mod algebra;
 pub mod blend;
