@@ -273,7 +273,7 @@ pub struct FieldArgs {
     /// Where to write the result: a mesh, or with .vti .nrrd .npy .vdb the values over a lattice
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
-    /// Voxels along the longest side of the box around the operands, or around the shape where there are none
+    /// Voxels along the longest side of the box around the shape
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel")]
     pub resolution: u32,
     /// Size of a voxel, instead of --resolution

@@ -23,7 +23,7 @@ use crate::fit::FitOptions;
 use crate::io::{Colours, Format, GridFormat, Unit, WriteOptions};
 use crate::mesh::Bounds;
 use crate::picture::ramp_colour;
-use crate::pipeline::{self, Built, FieldBuilder, FieldReport, Operand, Options, VoxelSize};
+use crate::pipeline::{self, Built, FieldBand, FieldBuilder, FieldReport, Operand, Options, VoxelSize};
 
 /// Values in a lattice reach so far from the surface, voxels, unless it is said otherwise.
 const USUAL_BAND: f64 = 4.0;
@@ -310,10 +310,11 @@ impl Run<'_> {
 
     fn grid(&self, built: &Built, path: &Path, format: GridFormat, report: &mut RunReport) -> Result<(), Failure> {
         let band = match self.args.band {
-            Some(BandChoice::Full) => None,
-            Some(BandChoice::Within(length)) => Some(length.resolve(self.scale)?),
-            None if self.texts.field.1.is_measure() => None,
-            None => self.scale.voxel.map(|h| USUAL_BAND * h),
+            Some(BandChoice::Full) => FieldBand::Full,
+            Some(BandChoice::Within(Length::Voxels(count))) => FieldBand::Voxels(count),
+            Some(BandChoice::Within(length)) => FieldBand::Length(length.resolve(self.scale)?),
+            None if self.texts.field.1.is_measure() => FieldBand::Full,
+            None => FieldBand::Voxels(USUAL_BAND),
         };
         let made = pipeline::field_grid(built, band, self.options, &self.session.progress);
         let outcome = made.map_err(|e| self.failure(&e))?;

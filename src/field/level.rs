@@ -1,9 +1,10 @@
 //! The zero level of a field as a contour with its tangent planes.
 
-use glam::{DVec3, IVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::fill::touches_border;
+use super::passages::Passages;
 use super::{Facet, Field, FillError, FillOptions, Sample, fill};
 use crate::contour::{Contour, ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
 use crate::lattice::Lattice;
@@ -13,10 +14,6 @@ use crate::progress::{Progress, Stopped};
 /// Values are found this far from the zero level, h: beyond the ends of the lattice edges that it crosses, where the field is
 /// a distance.
 const BAND: f64 = 1.2;
-/// A point whose value is nearer to zero than this, h, is on the level.
-const AT_LEVEL: f64 = 1e-6;
-/// Steps towards one point of the level.
-const MOST_STEPS: usize = 60;
 /// Tangent planes found in one packet.
 const PACKET: usize = 64;
 /// A gradient shorter than this is none.
@@ -63,13 +60,8 @@ pub fn level(
     let cut_off = touches_border(&grid, lattice.dims);
     // The contour takes distances in h.
     grid.values.par_iter_mut().flatten().for_each(|value| *value /= lattice.h as f32);
-    let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
-    let crossing = |edge: Edge| {
-        let ends = [edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]];
-        let values = ends.map(|voxel| f64::from(grid.get(voxel)) * lattice.h);
-        let t = passage(field, ends.map(model), values, AT_LEVEL * lattice.h)?;
-        Some(Crossing { t, triangle: NO_TRIANGLE })
-    };
+    let passages = Passages::of(field, &grid, lattice, progress)?;
+    let crossing = |edge: Edge| Some(Crossing { t: passages.at(edge)?, triangle: NO_TRIANGLE });
     let mut contour = contour(lattice, &grid, &crossing, &ContourOptions::default(), progress)?;
     drop(grid);
     let positions = &contour.mesh.positions;
@@ -79,31 +71,6 @@ pub fn level(
     progress.check()?;
     contour.vertices.iter_mut().zip(0..).for_each(|(vertex, n)| vertex.triangle = n);
     Ok(Level { contour, planes, facets, cut_off })
-}
-
-/// Where the field is zero between `ends` (model units), where it is `values`: 0 at the first, 1 at the second; `None`
-/// where these lie on one side. Regula falsi with the Illinois rule: the end that stays counts half.
-fn passage(field: &dyn Field, ends: [DVec3; 2], values: [f64; 2], near: f64) -> Option<f64> {
-    let (mut low, mut high) = ((0.0, values[0]), (1.0, values[1]));
-    if (low.1 < 0.0) == (high.1 < 0.0) {
-        return None;
-    }
-    for _ in 0..MOST_STEPS {
-        let t = low.0 + (high.0 - low.0) * (low.1 / (low.1 - high.1));
-        if !(t > low.0 && t < high.0) || high.0 - low.0 < 1e-12 {
-            return Some(t.clamp(low.0, high.0));
-        }
-        let at = field.value(ends[0].lerp(ends[1], t));
-        if at.abs() <= near {
-            return Some(t);
-        }
-        if (at < 0.0) == (low.1 < 0.0) {
-            (low, high.1) = ((t, at), high.1 / 2.0);
-        } else {
-            (high, low.1) = ((t, at), low.1 / 2.0);
-        }
-    }
-    Some((low.0 + high.0) / 2.0)
 }
 
 /// The planes through the points of the level nearest to `points`, by one step along the gradient; without a normal where

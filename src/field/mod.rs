@@ -30,6 +30,7 @@ pub mod language;
 mod level;
 mod material;
 mod mesh;
+mod passages;
 mod placed;
 mod points;
 mod range;

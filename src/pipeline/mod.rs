@@ -22,7 +22,9 @@ pub use distance::{
     DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, distance,
     plan_distance,
 };
-pub use field::{Built, FieldBuilder, FieldReport, Operand, OperandReport, field_grid, field_surface, field_values};
+pub use field::{
+    Built, FieldBand, FieldBuilder, FieldReport, Operand, OperandReport, field_grid, field_surface, field_values,
+};
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
 pub use plan::{plan, plan_canals, plan_morphology, plan_thicken};
 pub use report::{LdiReport, Report, StageTime, ThinReport};

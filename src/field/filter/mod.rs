@@ -172,14 +172,27 @@ impl Filtered {
         (medial + near) / 2.0 * self.around.more.len() as f64
     }
 
-    /// The mean of the sampled values, or as much of it as the displacements' weights are.
-    fn mean(&self, p: DVec3, value: f64, size: f64, displacements: &[Displacement], room: &mut Room) -> f64 {
+    /// Whether the kernel has any size where the field has this value.
+    fn spreads(&self, value: f64) -> bool {
+        value.is_finite() && self.size(value).0 * self.around.farthest > NOTHING * self.cap
+    }
+
+    /// For each of the points, whose values and sizes of the kernel are given, the mean of the sampled values, or as much
+    /// of it as the displacements' weights are. All points are displaced by the same sample before the next: so displaced
+    /// they stay as near each other as they are.
+    fn means(&self, points: &[Spread], displacements: &[Displacement], room: &mut Room) -> Vec<f64> {
+        let displaced = displacements.iter().flat_map(|d| points.iter().map(|at| at.p - d.by * at.size));
         room.points.clear();
-        room.points.extend(displacements.iter().map(|d| p - d.by * size));
-        room.values.resize(displacements.len(), 0.0);
+        room.points.extend(displaced);
+        room.values.resize(room.points.len(), 0.0);
         self.inner.values(&room.points, &mut room.values);
-        let counted = room.values.iter().map(|&v| self.counted(v, value.signum()));
-        displacements.iter().zip(counted).map(|(d, value)| d.weight * value).sum()
+        let mut means = vec![0.0; points.len()];
+        for (d, values) in displacements.iter().zip(room.values.chunks_exact(points.len().max(1))) {
+            for ((mean, &value), at) in means.iter_mut().zip(values).zip(points) {
+                *mean += d.weight * self.counted(value, at.own.value.signum());
+            }
+        }
+        means
     }
 
     /// The further samples that are needed where the first ones have this mean, and the sum of all weights if each of the
@@ -195,51 +208,65 @@ impl Filtered {
         (further, self.around.first.len() as f64 + sum)
     }
 
-    /// Whether the kernel has any size where the field has this value.
-    fn spreads(&self, value: f64) -> bool {
-        value.is_finite() && self.size(value).0 * self.around.farthest > NOTHING * self.cap
-    }
-
-    fn filter(&self, p: DVec3, value: f64, room: &mut Room) -> f64 {
-        if !self.spreads(value) {
-            return value;
-        }
-        let size = self.size(value).0;
-        let first = self.mean(p, value, size, &self.around.first, room);
-        if self.around.more.is_empty() {
-            return first;
-        }
-        let (further, all) = self.further(value, size, first);
-        (first * self.around.first.len() as f64 + self.mean(p, value, size, &further, room)) / all
-    }
-
-    /// ∇g = Σ w (∇f − (∇f · s) ∇h) at the displaced points; how the number of samples grows is left out.
-    fn filter_sample(&self, p: DVec3, own: Sample, room: &mut Room) -> Sample {
-        if !self.spreads(own.value) {
-            return own;
-        }
-        let (size, growth) = self.size(own.value);
-        let mut all = self.around.first.clone();
+    /// The filtered values.
+    fn filter(&self, points: &[Spread], room: &mut Room) -> Vec<f64> {
+        let mut means = self.means(points, &self.around.first, room);
         if !self.around.more.is_empty() {
-            let first = self.mean(p, own.value, size, &all, room);
-            let (further, count) = self.further(own.value, size, first);
-            let part = self.around.first.len() as f64 / count;
-            all.iter_mut().for_each(|d| d.weight *= part);
-            all.extend(further.into_iter().map(|d| Displacement { weight: d.weight / count, ..d }));
+            for (mean, at) in means.iter_mut().zip(points) {
+                let (further, all) = self.further(at.own.value, at.size, *mean);
+                let more = self.means(std::slice::from_ref(at), &further, room)[0];
+                *mean = (*mean * self.around.first.len() as f64 + more) / all;
+            }
         }
-        room.points.clear();
-        room.points.extend(all.iter().map(|d| p - d.by * size));
-        room.samples.resize(all.len(), Sample::default());
-        self.inner.samples(&room.points, &mut room.samples);
-        let mut sum = Sample::default();
-        for (d, sample) in all.iter().zip(&room.samples) {
-            let value = self.counted(sample.value, own.value.signum());
-            let gradient = if value == sample.value { sample.gradient } else { -sample.gradient };
-            sum.value += value * d.weight;
-            sum.gradient += (gradient - own.gradient * (growth * gradient.dot(d.by))) * d.weight;
-        }
-        sum
+        means
     }
+
+    /// Filtered values with gradients, all by the same displacements: ∇g = Σ w (∇f − (∇f · s) ∇h) at the displaced points.
+    fn filter_samples(&self, points: &[Spread], displacements: &[Displacement], room: &mut Room) -> Vec<Sample> {
+        let displaced = displacements.iter().flat_map(|d| points.iter().map(|at| at.p - d.by * at.size));
+        room.points.clear();
+        room.points.extend(displaced);
+        room.samples.resize(room.points.len(), Sample::default());
+        self.inner.samples(&room.points, &mut room.samples);
+        let mut sums = vec![Sample::default(); points.len()];
+        for (d, samples) in displacements.iter().zip(room.samples.chunks_exact(points.len().max(1))) {
+            for ((sum, sample), at) in sums.iter_mut().zip(samples).zip(points) {
+                let value = self.counted(sample.value, at.own.value.signum());
+                let gradient = if value == sample.value { sample.gradient } else { -sample.gradient };
+                sum.value += value * d.weight;
+                sum.gradient += (gradient - at.own.gradient * (at.growth * gradient.dot(d.by))) * d.weight;
+            }
+        }
+        sums
+    }
+
+    /// All displacements for one point, with the weights that they have there.
+    fn all_at(&self, at: &Spread, room: &mut Room) -> Vec<Displacement> {
+        let first = self.means(std::slice::from_ref(at), &self.around.first, room)[0];
+        let (further, count) = self.further(at.own.value, at.size, first);
+        let part = self.around.first.len() as f64 / count;
+        let scaled = self.around.first.iter().map(|d| Displacement { weight: d.weight * part, ..*d });
+        scaled.chain(further.into_iter().map(|d| Displacement { weight: d.weight / count, ..d })).collect()
+    }
+
+    /// The points where the kernel spreads.
+    fn spread(&self, points: &[DVec3], own: &[Sample]) -> (Vec<usize>, Vec<Spread>) {
+        let spread = (0..points.len()).filter(|&k| self.spreads(own[k].value)).map(|k| {
+            let (size, growth) = self.size(own[k].value);
+            (k, Spread { p: points[k], own: own[k], size, growth })
+        });
+        spread.unzip()
+    }
+}
+
+/// A point where the kernel has a size.
+struct Spread {
+    p: DVec3,
+    /// The field before it is filtered.
+    own: Sample,
+    /// The size of the kernel, and how it grows with the field.
+    size: f64,
+    growth: f64,
 }
 
 /// The mean of the first samples is off by this part of the kernel's size on the medial axis of a plate: measured for the
@@ -257,14 +284,26 @@ struct Room {
 impl Field for Filtered {
     fn values(&self, points: &[DVec3], values: &mut [f64]) {
         self.inner.values(points, values);
-        let mut room = Room::default();
-        points.iter().zip(values).for_each(|(&p, value)| *value = self.filter(p, *value, &mut room));
+        let own: Vec<Sample> = values.iter().map(|&value| Sample { value, gradient: DVec3::ZERO }).collect();
+        let (places, spread) = self.spread(points, &own);
+        let filtered = self.filter(&spread, &mut Room::default());
+        places.into_iter().zip(filtered).for_each(|(k, value)| values[k] = value);
     }
 
     fn samples(&self, points: &[DVec3], samples: &mut [Sample]) {
         self.inner.samples(points, samples);
-        let mut room = Room::default();
-        points.iter().zip(samples).for_each(|(&p, sample)| *sample = self.filter_sample(p, *sample, &mut room));
+        let (places, spread) = self.spread(points, samples);
+        let room = &mut Room::default();
+        let filtered = if self.around.more.is_empty() {
+            self.filter_samples(&spread, &self.around.first, room)
+        } else {
+            let mut one = |at: &Spread| {
+                let all = self.all_at(at, room);
+                self.filter_samples(std::slice::from_ref(at), &all, room)[0]
+            };
+            spread.iter().map(&mut one).collect()
+        };
+        places.into_iter().zip(filtered).for_each(|(k, sample)| samples[k] = sample);
     }
 
     fn range(&self, ball: &Ball) -> Range {

@@ -39,24 +39,11 @@ pub enum Operand {
 pub struct Built {
     /// The field.
     pub field: Shared,
-    /// The box around all operands, model units; `None` without operands.
-    pub around: Option<Bounds>,
     /// The box around all operands and bodies with an end, model units; `None` without any.
     pub parts: Option<Bounds>,
     /// How each operand became a field.
     pub operands: Vec<OperandReport>,
     pub(super) sources: Sources,
-}
-
-impl Built {
-    /// The voxel spacing, model units: along the operands, or along the shape where there are none.
-    pub(super) fn spacing(&self, extent: &Bounds, voxel: VoxelSize) -> Result<f64, Error> {
-        spacing(self.around.as_ref().unwrap_or(extent), voxel)
-    }
-}
-
-fn spacing(bounds: &Bounds, voxel: VoxelSize) -> Result<f64, Error> {
-    prepare::lattice(bounds, voxel).map(|lattice| lattice.h)
 }
 
 impl Operand {
@@ -74,7 +61,6 @@ pub struct FieldBuilder<'a> {
     operands: &'a [Operand],
     options: &'a Options,
     progress: &'a Progress,
-    around: Option<Bounds>,
     parts: Option<Bounds>,
     /// The operands that are fields already, by number and kind.
     made: BTreeMap<(usize, &'static str), Shared>,
@@ -84,8 +70,8 @@ pub struct FieldBuilder<'a> {
 impl<'a> FieldBuilder<'a> {
     /// Ready to make fields of `operands`. A mesh that is no valid solid will be repaired first, as `options` say.
     pub fn new(operands: &'a [Operand], options: &'a Options, progress: &'a Progress) -> Self {
-        let around = operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
-        Self { operands, options, progress, around, parts: around, made: BTreeMap::new(), sources: Sources::default() }
+        let parts = operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
+        Self { operands, options, progress, parts, made: BTreeMap::new(), sources: Sources::default() }
     }
 
     /// The field that `tree` says.
@@ -95,7 +81,7 @@ impl<'a> FieldBuilder<'a> {
     pub fn build(&mut self, tree: &Node<Value>) -> Result<Built, Error> {
         let field = self.node(tree)?;
         let operands = self.made.keys().map(|&(operand, made)| OperandReport { operand, made }).collect();
-        Ok(Built { field, around: self.around, parts: self.parts, operands, sources: self.sources.clone() })
+        Ok(Built { field, parts: self.parts, operands, sources: self.sources.clone() })
     }
 
     fn node(&mut self, node: &Node<Value>) -> Result<Shared, Error> {
@@ -171,7 +157,8 @@ impl<'a> FieldBuilder<'a> {
         if validate(mesh, &options, self.progress)?.is_valid() {
             return self.exact(operand);
         }
-        let outcome = repair(mesh, &self.own_options(operand)?, self.progress)?;
+        let classes = self.options.classes.get(operand).cloned().into_iter().collect();
+        let outcome = repair(mesh, &Options { classes, ..self.options.clone() }, self.progress)?;
         let origins = outcome.sources.iter().map(|source| match *source {
             TriangleSource::Operand { triangle, .. } => TriangleSource::Operand { operand: operand as u32, triangle },
             TriangleSource::Closed => TriangleSource::Closed,
@@ -199,7 +186,7 @@ impl<'a> FieldBuilder<'a> {
         }
         let known = KNOWN * mesh.bounds().map_or(0.0, |bounds| bounds.diagonal());
         let options = DistanceOptions {
-            voxel: self.own_options(operand)?.voxel,
+            voxel: self.options.voxel,
             band: Some(known),
             method,
             sign,
@@ -231,14 +218,6 @@ impl<'a> FieldBuilder<'a> {
         field
     }
 
-    /// The options for one operand alone: the voxel is that of all of them.
-    fn own_options(&self, operand: usize) -> Result<Options, Error> {
-        let around = self.around.ok_or(Error::Empty { operand })?;
-        let h = spacing(&around, self.options.voxel)?;
-        let classes = self.options.classes.get(operand).cloned().into_iter().collect();
-        Ok(Options { voxel: VoxelSize::Length(h), classes, ..self.options.clone() })
-    }
-
     fn ramp(&self, call: &Call<Value>, (a, b): (Shared, Shared)) -> Result<Shared, Error> {
         let axis = call.axis("axis").map_or(2, |axis| axis.number());
         let extent = a.extent().or(b.extent()).bounds();
@@ -264,13 +243,9 @@ impl<'a> FieldBuilder<'a> {
         Ok((grid, lattice))
     }
 
-    fn spacing_of(&self, field: &Shared) -> Result<f64, Error> {
-        let extent = self.around.or_else(|| field.extent().bounds()).ok_or_else(super::endless)?;
-        spacing(&extent, self.options.voxel)
-    }
-
     fn blur(&self, field: &Shared, sigma: f64) -> Result<Shared, Error> {
-        let h = self.spacing_of(field)?;
+        let extent = field.extent().bounds().ok_or_else(super::endless)?;
+        let h = prepare::lattice(&extent, self.options.voxel)?.h;
         let (grid, lattice) = self.sampled(field, h, blur_band(sigma) + 2.0 * h)?;
         Ok(Arc::new(Sampled::new(blurred(&grid, &lattice, sigma, self.progress)?, lattice)))
     }

@@ -13,7 +13,7 @@ use super::distance::DistanceOutcome;
 use super::morphology::volume;
 use super::{DistanceReport, Error, Options, Outcome, Report, TriangleSource, VoxelSize, prepare, refine, stages};
 use crate::field::filter::FilterError;
-use crate::field::{Extent, FillError, FillOptions, LevelError, Sample, Shared, fill, level};
+use crate::field::{Extent, Field, FillError, FillOptions, LevelError, Shared, fill, level};
 use crate::fit::{Facets, FitReport, fit};
 use crate::ldi::Evidence;
 use crate::mesh::Bounds;
@@ -24,6 +24,9 @@ use crate::sdf::exact::Band;
 const MORE_ROOM: f64 = 0.3;
 /// So often; then the shape has no end.
 const MOST_TRIES: usize = 4;
+/// Values below this, h, are as good as zero; points farther than the second one, h, are not near.
+const NEAR: f64 = 1e-3;
+const FAR: f64 = 0.1;
 /// A gradient shorter than this says nothing about how far the level is.
 const FLAT: f64 = 0.05;
 
@@ -58,9 +61,10 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
     let mut stages = stages::Stages::new(progress);
     stages.begin("field")?;
     let mut extent = shape_extent(&built.field)?;
+    let h = prepare::lattice(&extent, options.voxel)?.h;
     let mut tries = 0;
     let (level, lattice) = loop {
-        let lattice = prepare::lattice(&extent, VoxelSize::Length(built.spacing(&extent, options.voxel)?))?;
+        let lattice = prepare::lattice(&extent, VoxelSize::Length(h))?;
         let level = level(field, &lattice, options.max_memory, progress).map_err(no_level)?;
         if !level.cut_off {
             break (level, lattice);
@@ -82,7 +86,7 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         let own = sources.mesh.triangles.len() as u32 + n;
         vertex.triangle = facet.and_then(|facet| sources.number(facet)).unwrap_or(own);
     });
-    let wanted = |p: DVec3| off(field.sample(p));
+    let wanted = |p: DVec3| off(field, p, lattice.h);
     let facets = Facets::new(&sources.mesh, level.planes).with_wanted(&wanted);
     stages.begin("collapse")?;
     let mut surface = refine::merged(contour, &facets, &lattice, options, progress)?;
@@ -108,20 +112,35 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
     Ok((Outcome { mesh: surface.mesh, sources: origins, lattice, report }, account))
 }
 
-/// How far a point is from the level, model units.
-fn off(sample: Sample) -> f64 {
-    let steep = sample.gradient.length();
-    sample.value.abs() / if steep > FLAT { steep } else { 1.0 }
+/// How far a point is from the level, model units. Gradients cost more than values, and mostly the value tells enough.
+fn off(field: &dyn Field, p: DVec3, h: f64) -> f64 {
+    let value = field.value(p).abs();
+    let least = value / field.steepness();
+    if value < NEAR * h || least > FAR * h {
+        return least.max(value.min(NEAR * h));
+    }
+    let steep = field.sample(p).gradient.length();
+    value / if steep > FLAT { steep } else { 1.0 }
 }
 
-/// The field over a lattice around the shape, or around the operands where the field is no shape; values up to `band`
-/// (model units) from zero, or all.
+/// How far from zero a lattice has the values of a field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FieldBand {
+    /// So far, model units.
+    Length(f64),
+    /// So many voxels.
+    Voxels(f64),
+    /// All of them.
+    Full,
+}
+
+/// The field over a lattice around the shape, or around the operands and bodies where the field is no shape.
 ///
 /// # Errors
 /// See [`Error`].
 pub fn field_grid(
     built: &Built,
-    band: Option<f64>,
+    band: FieldBand,
     options: &Options,
     progress: &Progress,
 ) -> Result<DistanceOutcome, Error> {
@@ -129,8 +148,13 @@ pub fn field_grid(
     stages.begin("field")?;
     let shape = built.field.extent().or(Extent::of(built.parts));
     let extent = shape.bounds().or(built.parts).ok_or_else(endless)?;
-    let h = built.spacing(&extent, options.voxel)?;
-    let mut lattice = prepare::lattice(&extent, VoxelSize::Length(h))?;
+    let mut lattice = prepare::lattice(&extent, options.voxel)?;
+    let h = lattice.h;
+    let band = match band {
+        FieldBand::Length(length) => Some(length),
+        FieldBand::Voxels(count) => Some(count * h),
+        FieldBand::Full => None,
+    };
     let room = (band.unwrap_or(0.0) / h).ceil();
     lattice.origin -= room * h;
     lattice.dims += 2 * IVec3::splat(room as i32);
