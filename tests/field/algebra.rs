@@ -36,7 +36,7 @@ fn levels_of_all_shapes_are_valid_and_lie_on_the_level() {
 #[test]
 fn the_average_of_concentric_spheres_is_the_sphere_of_the_mean_radius() {
     let h = 0.05;
-    let meshes = [0.6, 1.0].map(|radius| ball_mesh(radius));
+    let meshes = [0.6, 1.0].map(ball_mesh);
     for fields in [[sphere(0.6, [0.0; 3]), sphere(1.0, [0.0; 3])], [mesh(&meshes[0]), mesh(&meshes[1])]] {
         for (weights, radius) in [([1.0, 1.0], 0.8), ([1.0, 3.0], 0.9)] {
             let (level, _) = surface(&average(fields.to_vec(), &weights), h);

@@ -21,6 +21,8 @@ use super::{Ball, Extent, Facet, Field, Range, Sample, Shared};
 /// The bump's width over the cap must not be more (7).
 pub const WIDEST: f64 = 8.0 / 9.0;
 
+/// Points that are displaced together.
+const PACKET: usize = 8;
 /// What counts as no displacement at all, over the cap.
 const NOTHING: f64 = 1e-12;
 
@@ -249,6 +251,16 @@ impl Filtered {
         scaled.chain(further.into_iter().map(|d| Displacement { weight: d.weight / count, ..d })).collect()
     }
 
+    /// The points by packets: eight together where the kernel reaches from one to the other, each alone elsewhere.
+    fn near<'s>(&self, points: &'s [Spread]) -> impl Iterator<Item = &'s [Spread]> {
+        let width = self.around.width;
+        points.chunks(PACKET).flat_map(move |packet| {
+            let reach = packet[0].size * width;
+            let together = packet.iter().all(|at| at.p.distance(packet[0].p) < reach);
+            packet.chunks(if together { PACKET } else { 1 })
+        })
+    }
+
     /// The points where the kernel spreads.
     fn spread(&self, points: &[DVec3], own: &[Sample]) -> (Vec<usize>, Vec<Spread>) {
         let spread = (0..points.len()).filter(|&k| self.spreads(own[k].value)).map(|k| {
@@ -286,7 +298,8 @@ impl Field for Filtered {
         self.inner.values(points, values);
         let own: Vec<Sample> = values.iter().map(|&value| Sample { value, gradient: DVec3::ZERO }).collect();
         let (places, spread) = self.spread(points, &own);
-        let filtered = self.filter(&spread, &mut Room::default());
+        let mut room = Room::default();
+        let filtered = self.near(&spread).flat_map(|near| self.filter(near, &mut room));
         places.into_iter().zip(filtered).for_each(|(k, value)| values[k] = value);
     }
 
@@ -294,8 +307,8 @@ impl Field for Filtered {
         self.inner.samples(points, samples);
         let (places, spread) = self.spread(points, samples);
         let room = &mut Room::default();
-        let filtered = if self.around.more.is_empty() {
-            self.filter_samples(&spread, &self.around.first, room)
+        let filtered: Vec<Sample> = if self.around.more.is_empty() {
+            self.near(&spread).flat_map(|near| self.filter_samples(near, &self.around.first, room)).collect()
         } else {
             let mut one = |at: &Spread| {
                 let all = self.all_at(at, room);
