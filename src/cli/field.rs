@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use super::args::FieldArgs;
 use super::csg::{explain, named_files};
 use super::exit::{Exit, Failure};
+use super::field_args::FieldArgs;
 use super::given::{Given, Which};
 use super::input::{self, is_stream};
 use super::length::{BandChoice, Length, Scale, Simplify};

@@ -12,6 +12,7 @@ mod csg_parser;
 mod devices;
 mod exit;
 mod field;
+mod field_args;
 mod given;
 mod input;
 mod inspect;

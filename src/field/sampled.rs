@@ -7,12 +7,15 @@ use rayon::prelude::*;
 
 use super::{Ball, Extent, Field, Range, Sample};
 use crate::io::{GridFile, GridValues, SparseValues};
-use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot, brick_of};
+use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot, brick_of, index_in_brick};
 use crate::mesh::Bounds;
 use crate::progress::{Progress, Stopped};
 
 /// Bricks that a ball may meet, along an axis, for its range to be looked up in each; larger ones are bounded by the steepness.
 const MOST_BRICKS: i32 = 6;
+
+/// Voxels along a side of a brick with those next to it.
+const SIDE: i32 = BRICK + 1;
 
 /// A field by its values at the voxels of a lattice, interpolated linearly along each axis. Beyond the lattice it is what it
 /// is at the nearest point of it, and grows with the distance from there.
@@ -72,27 +75,41 @@ impl Sampled {
     fn describe(&self, brick: IVec3) -> (Range, f32, Option<Bounds>) {
         let (mut range, mut steepest) = (Range::of([]), 0.0f32);
         let (mut low, mut high) = (IVec3::MAX, IVec3::MIN);
-        let last = self.lattice.dims - 1;
-        for n in 0..(BRICK + 1).pow(3) {
-            let at = IVec3::new(n % (BRICK + 1), n / (BRICK + 1) % (BRICK + 1), n / (BRICK + 1).pow(2));
-            let voxel = BRICK * brick + at;
-            if voxel.cmpgt(last).any() {
+        let last = (self.lattice.dims - 1 - BRICK * brick).min(IVec3::splat(BRICK));
+        let values = self.with_neighbours(brick);
+        let value = |at: IVec3| values[(at.x + SIDE * (at.y + SIDE * at.z)) as usize];
+        for n in 0..SIDE.pow(3) {
+            let at = IVec3::new(n % SIDE, n / SIDE % SIDE, n / SIDE.pow(2));
+            if at.cmpgt(last).any() {
                 continue;
             }
-            let value = self.grid.get(voxel);
-            range = range.or(Range::of([f64::from(value)]));
-            if value <= 0.0 {
-                (low, high) = (low.min(voxel), high.max(voxel));
+            let own = value(at);
+            range = range.or(Range::of([f64::from(own)]));
+            if own <= 0.0 {
+                (low, high) = (low.min(BRICK * brick + at), high.max(BRICK * brick + at));
             }
-            for axis in 0..3 {
-                let next = voxel + IVec3::AXES[axis];
-                if at[axis] < BRICK && next[axis] <= last[axis] {
-                    steepest = steepest.max((self.grid.get(next) - value).abs());
-                }
+            for axis in (0..3).filter(|&axis| at[axis] < last[axis]) {
+                steepest = steepest.max((value(at + IVec3::AXES[axis]) - own).abs());
             }
         }
         let model = |voxel: IVec3| self.lattice.to_model(voxel.as_dvec3());
         (range, steepest, low.cmple(high).all().then(|| Bounds { min: model(low - 1), max: model(high + 1) }))
+    }
+
+    /// The values of a brick and of the voxels beyond its upper sides.
+    fn with_neighbours(&self, brick: IVec3) -> Vec<f32> {
+        let slots: [Slot; 8] =
+            std::array::from_fn(|k| self.grid.bricks.slot(brick + (IVec3::splat(k as i32) >> IVec3::new(0, 1, 2) & 1)));
+        let value = |n: i32| {
+            let at = IVec3::new(n % SIDE, n / SIDE % SIDE, n / SIDE.pow(2));
+            let [x, y, z] = (at / BRICK).to_array();
+            match slots[(x + 2 * y + 4 * z) as usize] {
+                Slot::Active(n) => self.grid.values[n as usize][index_in_brick(at)],
+                Slot::Inside => self.grid.inside,
+                Slot::Outside => self.grid.outside,
+            }
+        };
+        (0..SIDE.pow(3)).map(value).collect()
     }
 
     fn at(&self, p: DVec3) -> Sample {

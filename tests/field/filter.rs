@@ -55,7 +55,7 @@ fn the_zero_level_is_unchanged_and_no_other_arises() {
         let few = Sampling::Drawn { count: 8, seed: 0, mirrored: true };
         let options = FilterOptions { sampling: few, ..FilterOptions::new(0.05 * diagonal) };
         let smooth = filtered(plain.clone(), &options).unwrap();
-        let points = on_surface(&mesh, 2000);
+        let points = on_surface(&mesh, 10_000);
         let mut values = vec![0.0; points.len()];
         smooth.values(&points, &mut values);
         let worst = values.iter().fold(0.0, |worst: f64, value| worst.max(value.abs()));
