@@ -5,7 +5,7 @@ tools/examples.py PROGRAM [--quick] [--only WORD] [--data FOLDER] [--judge SCORE
 
 --quick: at a low resolution, and the pictures are thrown away: a check that every command works and that every mesh it
 makes is valid by PROGRAM's own `inspect --fail-on any`. --only: the sections whose title has the word. --judge: also let
-another program, called as `SCORE.PY MESH MESH --json`, say whether every mesh is valid.
+another program, called as `SCORE.PY MESH MESH --json --samples N`, say whether every mesh is valid.
 """
 
 import argparse
@@ -53,8 +53,8 @@ def valid(program, path, judge):
         return False
     if judge is None:
         return True
-    told = subprocess.run([sys.executable, judge, path, path, "--json"], capture_output=True, text=True)
-    return told.returncode == 0 and json.loads(told.stdout).get("valid") is True
+    told = subprocess.run([sys.executable, judge, path, path, "--json", "--samples", "1000"], capture_output=True, text=True)
+    return told.returncode == 0 and json.loads(told.stdout)["validity"]["valid"] is True
 
 
 def main():
