@@ -22,7 +22,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "examples" / "README.md"
-QUICK = {"--resolution": "32"}
+QUICK = {"--resolution": "24"}
 
 
 def sections(page):
@@ -41,7 +41,7 @@ def quick(words):
         if word in QUICK:
             words[k + 1] = QUICK[word]
         elif word == "--voxel":
-            words[k + 1] = str(4 * float(words[k + 1]))
+            words[k + 1] = str(5 * float(words[k + 1]))
         elif word in ("--width", "--height"):
             words[k + 1] = "96"
     return words
@@ -89,7 +89,7 @@ def main():
                     shutil.copy(picture, PAGE.parent / picture.name)
                 picture.unlink()
             print(f"{time.time() - started:8.1f} s  {title}", flush=True)
-    sys.exit("\n".join(failed))
+    sys.exit("\n".join(failed) or 0)
 
 
 if __name__ == "__main__":

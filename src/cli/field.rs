@@ -166,6 +166,13 @@ fn targets(args: &FieldArgs, paths: &[&Path]) -> Result<Vec<Place>, Failure> {
                 Err(Failure::usage("--paint colours the vertices of a mesh, and a lattice has none")
                     .hint("the values themselves: the expression of --paint in the place of EXPR"))
             }
+            Some(_) if args.no_fit || args.no_collapse || args.simplify.is_some() => Err(Failure::usage(
+                "--no-fit, --no-collapse and --simplify are about the triangles of a mesh, and a lattice has none",
+            )),
+            None if args.band.is_some() => {
+                Err(Failure::usage("--band is about the values over a lattice, and a mesh has none")
+                    .hint("a name after -o that ends in .vti, .nrrd, .npy or .vdb"))
+            }
             Some(format) => {
                 output::check_overwrite(&path, args.writing.force, paths)?;
                 Ok(Place::Grid(path, format))
@@ -207,16 +214,9 @@ fn options(args: &FieldArgs, scale: &Scale, given: &Given) -> Result<Options, Fa
         _ => VoxelSize::Along(args.resolution),
     };
     let usual = FitOptions::default();
-    let tolerance = match (args.simplify, scale.voxel) {
-        (Some(Simplify::Off), _) => 0.0,
-        (Some(Simplify::Within(length)), Some(h)) if h > 0.0 => length.resolve(scale)? / h,
-        (Some(Simplify::Within(_)), _) => {
-            return Err(Failure::usage("--simplify cannot be measured without a file or --voxel"));
-        }
-        // Colours that vary are kept apart by the vertices.
-        _ if args.paint.is_some() => 0.0,
-        _ => usual.tolerance,
-    };
+    // Colours that vary are kept apart by the vertices. Lengths are measured when the voxel is known.
+    let keeps_all = args.simplify == Some(Simplify::Off) || args.simplify.is_none() && args.paint.is_some();
+    let tolerance = if keeps_all { 0.0 } else { usual.tolerance };
     Ok(Options {
         fit: (!args.no_fit).then_some(FitOptions { tolerance, ..usual }),
         classes: given.painted().map(|(_, colours)| pipeline::classes(colours)).collect(),
@@ -240,7 +240,7 @@ fn resolved(args: &FieldArgs, unit: Option<Unit>, options: &Options, scale: &Sca
         "orient": format!("{:?}", options.orient).to_lowercase(),
         "collapse": options.collapse,
         "fit": options.fit.is_some(),
-        "simplify_voxels": options.fit.map(|fit| fit.tolerance),
+        "simplify_as_given": args.simplify.map(|simplify| simplify.to_string()),
         "threads": rayon::current_num_threads(),
         "max_memory_bytes": options.max_memory,
         "timeout_seconds": args.common.timeout.map(|timeout| timeout.as_secs_f64()),
@@ -288,8 +288,10 @@ impl Run<'_> {
 
     fn mesh(&mut self, built: &Built, share: f64, target: &Target, report: &mut RunReport) -> Result<(), Failure> {
         let progress = &self.session.progress;
-        let made = pipeline::field_surface(built, self.options, progress);
+        let options = self.simplified(built)?;
+        let made = pipeline::field_surface(built, &options, progress);
         let (outcome, account) = made.map_err(|e| self.failure(&e))?;
+        report.options["voxel"] = json!(outcome.lattice.h);
         report.stages.extend(outcome.report.stages.iter().cloned());
         report.fields.push(account);
         let paint = match &self.texts.paint {
@@ -306,6 +308,16 @@ impl Run<'_> {
         let target =
             Target { path: target.path.clone(), options: WriteOptions { unit: self.scale.unit, ..target.options } };
         solid::write(&outcome.mesh, paint.as_ref(), &target, self.session, report)
+    }
+
+    /// The options with `--simplify` in voxels of the lattice that the surface will be made on.
+    fn simplified(&self, built: &Built) -> Result<Options, Failure> {
+        let mut options = self.options.clone();
+        if let (Some(Simplify::Within(length)), Some(fit)) = (self.args.simplify, &mut options.fit) {
+            let h = pipeline::field_spacing(built, self.options).map_err(|e| self.failure(&e))?;
+            fit.tolerance = length.resolve(&Scale { voxel: Some(h), ..*self.scale })? / h;
+        }
+        Ok(options)
     }
 
     fn grid(&self, built: &Built, path: &Path, format: GridFormat, report: &mut RunReport) -> Result<(), Failure> {
@@ -351,11 +363,11 @@ fn painted(values: &[f64], range: Option<(f64, f64)>, report: &mut RunReport) ->
     let finite = || values.iter().copied().filter(|value| value.is_finite());
     let (low, high) =
         range.unwrap_or_else(|| (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)));
-    report.warnings.push(format!(
-        "colours stand for values from {} (violet) to {} (yellow)",
-        words::number(low),
-        words::number(high)
-    ));
+    let note =
+        format!("colours stand for values from {} (violet) to {} (yellow)", words::number(low), words::number(high));
+    if !report.warnings.contains(&note) {
+        report.warnings.push(note);
+    }
     let size = if high == low { 1.0 } else { high - low };
     let colour = |value: &f64| {
         let [r, g, b] = ramp_colour((value - low) / size);

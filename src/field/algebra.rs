@@ -36,10 +36,9 @@ pub fn difference(first: Shared, others: Vec<Shared>) -> Shared {
     intersection(std::iter::once(first).chain(others.into_iter().map(complement)).collect())
 }
 
-/// What is in exactly one of two fields.
-pub fn symmetric_difference(a: Shared, b: Shared) -> Shared {
-    let both = intersection(vec![a.clone(), b.clone()]);
-    difference(union(vec![a, b]), vec![both])
+/// What is in an odd number of the fields: of two, in exactly one.
+pub fn symmetric_difference(fields: Vec<Shared>) -> Shared {
+    Arc::new(Combined::new(fields, Odd))
 }
 
 /// The sum of the fields times their weights, over the sum of the weights ("Multiple-object averaging"). Weights are not
@@ -200,6 +199,45 @@ impl Rule for Pick {
     fn extent(&self, extents: &[Extent]) -> Extent {
         let both = if self.greatest { Extent::and } else { Extent::or };
         extents.iter().copied().reduce(both).unwrap_or(Extent::Empty)
+    }
+
+    fn keeps_surfaces(&self) -> bool {
+        true
+    }
+}
+
+/// One after the other, what is in exactly one of the field so far and the next: max(min(a, b), −max(a, b)).
+struct Odd;
+
+impl Rule for Odd {
+    fn apply(&self, _: DVec3, values: &[f64], slopes: &mut [f64]) -> Slope {
+        slopes.fill(0.0);
+        slopes[0] = 1.0;
+        let mut so_far = values[0];
+        for k in 1..values.len() {
+            let (own, next) = (values[k], so_far.min(values[k]).max(-so_far.max(values[k])));
+            // The value is that of one of the two, or the opposite of it.
+            let of_own = next == own || next == -own && next != so_far;
+            let sign = if next == own || next == so_far { 1.0 } else { -1.0 };
+            slopes[..k].iter_mut().for_each(|slope| *slope *= if of_own { 0.0 } else { sign });
+            slopes[k] = if of_own { sign } else { 0.0 };
+            so_far = next;
+        }
+        Slope { value: so_far, ..Slope::default() }
+    }
+
+    fn range(&self, _: &Ball, ranges: &[Range]) -> Range {
+        let pick = |a: Range, b: Range, f: fn(f64, f64) -> f64| Range { min: f(a.min, b.min), max: f(a.max, b.max) };
+        let both = |a: Range, b: Range| pick(pick(a, b, f64::min), pick(a, b, f64::max).times(-1.0), f64::max);
+        ranges.iter().copied().reduce(both).unwrap_or(Range::ALL)
+    }
+
+    fn steepness(&self, steepness: &[f64]) -> f64 {
+        steepness.iter().copied().fold(0.0, f64::max)
+    }
+
+    fn extent(&self, extents: &[Extent]) -> Extent {
+        extents.iter().copied().reduce(Extent::or).unwrap_or(Extent::Empty)
     }
 
     fn keeps_surfaces(&self) -> bool {

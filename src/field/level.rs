@@ -60,6 +60,7 @@ pub fn level(
     let cut_off = touches_border(&grid, lattice.dims);
     // The contour takes distances in h.
     grid.values.par_iter_mut().flatten().for_each(|value| *value /= lattice.h as f32);
+    (grid.inside, grid.outside) = (grid.inside / lattice.h as f32, grid.outside / lattice.h as f32);
     let passages = Passages::of(field, &grid, lattice, progress)?;
     let crossing = |edge: Edge| Some(Crossing { t: passages.at(edge)?, triangle: NO_TRIANGLE });
     let mut contour = contour(lattice, &grid, &crossing, &ContourOptions::default(), progress)?;

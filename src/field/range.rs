@@ -87,9 +87,10 @@ impl Extent {
         bounds.map_or(Self::Empty, Self::Within)
     }
 
-    /// The box, if there is one.
+    /// The box, if there is one that holds anything.
     pub fn bounds(self) -> Option<Bounds> {
-        if let Self::Within(bounds) = self { Some(bounds) } else { None }
+        let Self::Within(bounds) = self else { return None };
+        bounds.min.cmple(bounds.max).all().then_some(bounds)
     }
 
     /// Where one of the two may be.
@@ -101,22 +102,19 @@ impl Extent {
         }
     }
 
-    /// Where both may be.
+    /// Where both may be. Boxes apart from each other give one whose least corner is beyond its greatest: it holds nothing,
+    /// but grown it may.
     pub fn and(self, other: Self) -> Self {
         match (self, other) {
             (Self::Empty, _) | (_, Self::Empty) => Self::Empty,
             (Self::Unbounded, extent) | (extent, Self::Unbounded) => extent,
-            (Self::Within(a), Self::Within(b)) => {
-                let (min, max) = (a.min.max(b.min), a.max.min(b.max));
-                if min.cmple(max).all() { Self::Within(Bounds { min, max }) } else { Self::Empty }
-            }
+            (Self::Within(a), Self::Within(b)) => Self::Within(Bounds { min: a.min.max(b.min), max: a.max.min(b.max) }),
         }
     }
 
-    /// The box larger by `by` on all sides, model units; less than nothing is nothing.
+    /// The box larger by `by` on all sides, model units.
     pub fn grown(self, by: f64) -> Self {
         let Self::Within(bounds) = self else { return self };
-        let (min, max) = (bounds.min - by, bounds.max + by);
-        if min.cmple(max).all() { Self::Within(Bounds { min, max }) } else { Self::Empty }
+        Self::Within(Bounds { min: bounds.min - by, max: bounds.max + by })
     }
 }

@@ -38,9 +38,9 @@ impl Sampled {
             sampled.grid.bricks.active().par_iter().map(|&brick| sampled.describe(brick)).collect();
         let far = |values: &[f32]| Range::of(values.iter().filter(|v| v.is_finite()).map(|&v| f64::from(v)));
         sampled.all = parts.iter().fold(far(&[sampled.grid.inside, sampled.grid.outside]), |all, part| all.or(part.0));
-        // Along each axis the interpolated field is as steep as the steepest pair of voxels.
+        // Along each axis the interpolated field is as steep as the steepest pair of voxels; beyond the lattice it rises by 1 besides.
         let steepest = parts.iter().fold(0.0, |most, part| f32::max(most, part.1));
-        sampled.steepness = (f64::from(steepest) / sampled.lattice.h * 3f64.sqrt()).max(1.0);
+        sampled.steepness = (f64::from(steepest) / sampled.lattice.h * 3f64.sqrt()).hypot(1.0);
         let boxes = parts.iter().filter_map(|part| part.2).reduce(|a, b| a.union(&b));
         sampled.extent = Extent::of(boxes);
         sampled.ranges = parts.into_iter().map(|part| part.0).collect();
@@ -273,7 +273,9 @@ pub fn dense(values: &[f32], dims: IVec3) -> Grid<f32> {
             let n = n as i32;
             // Voxels of the last bricks beyond the lattice repeat its border.
             let voxel = (BRICK * brick + IVec3::new(n & 7, n >> 3 & 7, n >> 6)).min(dims - 1);
-            values.get((voxel.x + dims.x * (voxel.y + dims.y * voxel.z)) as usize).copied().unwrap_or(f32::INFINITY)
+            let [x, y, z] = voxel.to_array().map(|k| k as usize);
+            let [width, height, _] = dims.to_array().map(|k| k as usize);
+            values.get(x + width * (y + height * z)).copied().unwrap_or(f32::INFINITY)
         })
     };
     let values = bricks.active().par_iter().map(of).collect();

@@ -60,7 +60,7 @@ impl Eight {
     fn to_triangle(&self, corners: &[Vec3; 3]) -> Lane {
         let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         let square = normal.length_squared();
-        let part = if square > 0.0 { 1.0 / square } else { 0.0 };
+        let part = if square > f32::MIN_POSITIVE { 1.0 / square } else { 0.0 };
         [self.half_to_triangle(0, corners, normal, part), self.half_to_triangle(1, corners, normal, part)]
     }
 

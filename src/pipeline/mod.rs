@@ -23,7 +23,8 @@ pub use distance::{
     plan_distance,
 };
 pub use field::{
-    Built, FieldBand, FieldBuilder, FieldReport, Operand, OperandReport, field_grid, field_surface, field_values,
+    Built, FieldBand, FieldBuilder, FieldReport, Operand, OperandReport, field_grid, field_spacing, field_surface,
+    field_values,
 };
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
 pub use plan::{plan, plan_canals, plan_morphology, plan_thicken};

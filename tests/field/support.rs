@@ -73,7 +73,11 @@ pub fn all() -> Vec<(&'static str, Shared)> {
         ("complement", complement(ball())),
         ("union", union(vec![ball(), torus()])),
         ("difference", difference(block(), vec![torus(), ball()])),
-        ("exactly one", algebra::symmetric_difference(block(), torus())),
+        ("exactly one", algebra::symmetric_difference(vec![block(), torus(), ball()])),
+        (
+            "two apart, grown",
+            offset(algebra::intersection(vec![sphere(0.5, [-0.6, 0.0, 0.0]), sphere(0.5, [0.6, 0.0, 0.0])]), 0.4),
+        ),
         ("average", average(vec![ball(), block(), torus()], &[1.0, 1.0, 2.0])),
         ("morph", morph(torus(), ball(), 0.3)),
         ("morph by radii", algebra::morph_by_radii([torus(), ball()], [0.3, 0.8], 0.6)),

@@ -324,8 +324,14 @@ impl Field for Filtered {
         let most = own.abs().max;
         let size = if most.is_finite() { self.size(most).0 } else { 1.0 };
         let reached = self.inner.range(&Ball { radius: ball.radius + size * self.around.farthest, ..*ball });
-        // On one side of the surface no sample is on the other.
-        let side = if own.min > 0.0 {
+        // Unsigned samples with the sign of the point.
+        let most = reached.abs().max;
+        let reached = if self.sign_safe { Range { min: -most, max: most } } else { reached };
+        // On one side of the surface no sample is on the other, where the field is nowhere steeper than a distance.
+        let held = self.sign_safe || self.inner.steepness() <= 1.0;
+        let side = if !held {
+            Range::ALL
+        } else if own.min > 0.0 {
             Range { min: 0.0, max: f64::INFINITY }
         } else if own.max < 0.0 {
             Range { min: f64::NEG_INFINITY, max: 0.0 }

@@ -138,6 +138,10 @@ impl Checker<'_> {
             return Err(LanguageError::WrongCount { at, signature: signature.to_string(), wanted, found });
         }
         let sum = numbers.iter().sum::<f64>();
+        if let Some(negative) = numbers.iter().find(|number| signature.list == List::Weights && **number < 0.0) {
+            let (what, wanted) = ("each weight".into(), "zero or more".into());
+            return Err(LanguageError::OutOfRange { at, what, wanted, found: negative.to_string() });
+        }
         if signature.list == List::Weights && !(sum > 0.0 && sum.is_finite()) {
             let (what, wanted) = ("the sum of the weights".into(), "above zero".into());
             return Err(LanguageError::OutOfRange { at, what, wanted, found: sum.to_string() });

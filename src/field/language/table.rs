@@ -268,7 +268,12 @@ pub const FUNCTIONS: [Signature; Function::Levels as usize + 1] = [
         &[required("voxel", Kind::Length)],
     ),
     with(
-        of_fields(Function::Blob, "blob", &["a"], "the blobby field: one half on the surface, 0 and 1 from radius on"),
+        of_fields(
+            Function::Blob,
+            "blob",
+            &["a"],
+            "the blobby field: 0 on the surface, minus and plus radius from radius on",
+        ),
         BLOB,
     ),
     with(of_fields(Function::BlobUnion, "blob_union", &["a", "b"], "the sum of blobby fields"), BLOB),

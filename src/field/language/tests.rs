@@ -212,7 +212,7 @@ fn errors_of_meaning_name_the_place_and_what_was_wanted() {
         ("average(a, b; 1)", 14, "`average(a, b, ...; [weights])` takes 2 after the `;`, found 1"),
         ("material(a, b)", 13, "`material(a, b, ...; values)` takes 2 after the `;`, found 0"),
         ("union(a, b; 1, 2)", 12, "`union(a, b, ...)` takes 0 after the `;`, found 2"),
-        ("average(a, b; 1, -1)", 14, "`the sum of the weights` must be above zero; `0` is out of that range"),
+        ("average(a, b; 0, 0)", 14, "`the sum of the weights` must be above zero; `0` is out of that range"),
         ("average(a, b; 1, 2mm)", 17, "`what follows the ;` must be plain numbers; `2mm` is not"),
         ("exact(a | b)", 6, "`name of exact(name)` must be the name of a file; `a | b` is not"),
         ("offset(a, 1e999)", 10, "`1e999` is beyond all numbers"),

@@ -194,7 +194,8 @@ impl<A> Node<A> {
     /// Whether its values are no distances to a shape, but measures of something else.
     pub fn is_measure(&self) -> bool {
         let measures = [Function::Material, Function::Compare];
-        matches!(&self.kind, NodeKind::Call(call) if measures.contains(&call.function))
+        let of_call = |call: &Call<A>| measures.contains(&call.function) || call.fields.iter().any(Self::is_measure);
+        matches!(&self.kind, NodeKind::Call(call) if of_call(call))
     }
 
     /// The numbers of the operands that it uses.

@@ -1,6 +1,6 @@
 //! From the tree of an expression to a field.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -62,6 +62,8 @@ pub struct FieldBuilder<'a> {
     options: &'a Options,
     progress: &'a Progress,
     parts: Option<Bounds>,
+    /// The operands that are valid solids.
+    valid: BTreeSet<usize>,
     /// The operands that are fields already, by number and kind.
     made: BTreeMap<(usize, &'static str), Shared>,
     sources: Sources,
@@ -70,8 +72,15 @@ pub struct FieldBuilder<'a> {
 impl<'a> FieldBuilder<'a> {
     /// Ready to make fields of `operands`. A mesh that is no valid solid will be repaired first, as `options` say.
     pub fn new(operands: &'a [Operand], options: &'a Options, progress: &'a Progress) -> Self {
-        let parts = operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
-        Self { operands, options, progress, parts, made: BTreeMap::new(), sources: Sources::default() }
+        Self {
+            operands,
+            options,
+            progress,
+            parts: None,
+            valid: BTreeSet::new(),
+            made: BTreeMap::new(),
+            sources: Sources::default(),
+        }
     }
 
     /// The field that `tree` says.
@@ -79,6 +88,7 @@ impl<'a> FieldBuilder<'a> {
     /// # Errors
     /// See [`Error`].
     pub fn build(&mut self, tree: &Node<Value>) -> Result<Built, Error> {
+        self.parts = self.operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
         let field = self.node(tree)?;
         let operands = self.made.keys().map(|&(operand, made)| OperandReport { operand, made }).collect();
         Ok(Built { field, parts: self.parts, operands, sources: self.sources.clone() })
@@ -114,7 +124,7 @@ impl<'a> FieldBuilder<'a> {
             F::Union => Some(union(fields.clone())),
             F::Intersection => Some(intersection(fields.clone())),
             F::Difference => several(difference),
-            F::SymmetricDifference => fields.iter().cloned().reduce(symmetric_difference),
+            F::SymmetricDifference => Some(symmetric_difference(fields.clone())),
             F::Offset => first().map(|a| algebra::offset(a, length("by"))),
             F::Shell => first().map(|a| algebra::shell(a, length("thickness"))),
             F::Blend => pair().map(|(a, b)| blend_union(a, b, length("radius"))),
@@ -130,7 +140,7 @@ impl<'a> FieldBuilder<'a> {
             F::Smooth => pair().map(|(a, volume)| smooth(a, volume, &smoothing(call))),
             F::Blur => first().map(|a| self.blur(&a, length("sigma"))).transpose()?,
             F::Coarse => first().map(|a| self.coarse(&a, length("voxel"))).transpose()?,
-            F::Blob => Some(blob::blob_union(fields.clone(), blobs)),
+            F::Blob => first().map(|a| blob::blob(a, blobs)),
             F::BlobUnion => Some(blob::blob_union(fields.clone(), blobs)),
             F::BlobIntersection => Some(blob::blob_intersection(fields.clone(), blobs)),
             F::BlobDifference => pair().map(|(a, b)| blob::blob_difference(a, vec![b], blobs)),
@@ -150,11 +160,15 @@ impl<'a> FieldBuilder<'a> {
             Operand::Grid(grid) => return Ok(self.remember(operand, "grid", grid.clone())),
             Operand::Mesh(mesh) => mesh,
         };
-        if let Some(made) = self.made.get(&(operand, "exact")).or(self.made.get(&(operand, "repaired"))) {
+        if let Some(made) = self.made.get(&(operand, "repaired")) {
             return Ok(made.clone());
+        }
+        if self.valid.contains(&operand) {
+            return self.exact(operand);
         }
         let options = ValidateOptions { self_intersections: true, weld: true };
         if validate(mesh, &options, self.progress)?.is_valid() {
+            self.valid.insert(operand);
             return self.exact(operand);
         }
         let classes = self.options.classes.get(operand).cloned().into_iter().collect();
@@ -236,7 +250,8 @@ impl<'a> FieldBuilder<'a> {
 
     /// The field over its own lattice, filled up to `band` from zero, or all of it.
     fn sampled(&self, field: &Shared, h: f64, band: f64) -> Result<(crate::lattice::Grid<f32>, Lattice), Error> {
-        let extent = field.extent().grown(band).bounds().ok_or_else(super::endless)?;
+        let extent = super::shape_extent(field)?;
+        let extent = Bounds { min: extent.min - band, max: extent.max + band };
         let lattice = prepare::lattice(&extent, VoxelSize::Length(h))?;
         let options = FillOptions { band: Some(band), max_memory: self.options.max_memory };
         let grid = fill(&**field, &lattice, &options, self.progress).map_err(not_filled)?;
@@ -244,7 +259,7 @@ impl<'a> FieldBuilder<'a> {
     }
 
     fn blur(&self, field: &Shared, sigma: f64) -> Result<Shared, Error> {
-        let extent = field.extent().bounds().ok_or_else(super::endless)?;
+        let extent = super::shape_extent(field)?;
         let h = prepare::lattice(&extent, self.options.voxel)?.h;
         let (grid, lattice) = self.sampled(field, h, blur_band(sigma) + 2.0 * h)?;
         Ok(Arc::new(Sampled::new(blurred(&grid, &lattice, sigma, self.progress)?, lattice)))
@@ -273,7 +288,7 @@ impl<'a> FieldBuilder<'a> {
 
 /// A field elsewhere, larger or turned.
 fn moved(call: &Call<Value>, fields: &[Shared]) -> Result<Shared, Error> {
-    let extent = |k: usize| fields.get(k).and_then(|field| field.extent().bounds()).ok_or_else(super::endless);
+    let extent = |k: usize| super::shape_extent(&fields[k]);
     let middle = || extent(0).map(|bounds| (bounds.min + bounds.max) / 2.0);
     let length = |name: &str| call.length(name).unwrap_or_default();
     let number = |name: &str| call.number(name).unwrap_or(1.0);
@@ -283,7 +298,14 @@ fn moved(call: &Call<Value>, fields: &[Shared]) -> Result<Shared, Error> {
             let axis = call.axis("axis").map_or(2, |axis| axis.number());
             Placement::turned(axis, number("degrees").to_radians(), middle()?)
         }
-        Function::Align => Placement::fitted(&extent(0)?, &extent(1)?),
+        Function::Align => {
+            let (from, to) = (extent(0)?, extent(1)?);
+            if [from, to].iter().any(|bounds| bounds.size().max_element() <= 0.0) {
+                let reason = "a shape without a size cannot be aligned";
+                return Err(Error::NothingEnclosed { reason: reason.into() });
+            }
+            Placement::fitted(&from, &to)
+        }
         _ => Placement::moved(DVec3::new(length("x"), length("y"), length("z"))),
     };
     Ok(placed(fields[0].clone(), placement))

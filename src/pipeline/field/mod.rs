@@ -15,7 +15,7 @@ use super::{DistanceReport, Error, Options, Outcome, Report, TriangleSource, Vox
 use crate::field::filter::FilterError;
 use crate::field::{Extent, Field, FillError, FillOptions, LevelError, Shared, fill, level};
 use crate::fit::{Facets, FitReport, fit};
-use crate::ldi::Evidence;
+use crate::ldi::{Evidence, MAX_VOXELS};
 use crate::mesh::Bounds;
 use crate::progress::Progress;
 use crate::sdf::exact::Band;
@@ -61,7 +61,7 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
     let mut stages = stages::Stages::new(progress);
     stages.begin("field")?;
     let mut extent = shape_extent(&built.field)?;
-    let h = prepare::lattice(&extent, options.voxel)?.h;
+    let h = field_spacing(built, options)?;
     let mut tries = 0;
     let (level, lattice) = loop {
         let lattice = prepare::lattice(&extent, VoxelSize::Length(h))?;
@@ -146,8 +146,7 @@ pub fn field_grid(
 ) -> Result<DistanceOutcome, Error> {
     let mut stages = stages::Stages::new(progress);
     stages.begin("field")?;
-    let shape = built.field.extent().or(Extent::of(built.parts));
-    let extent = shape.bounds().or(built.parts).ok_or_else(endless)?;
+    let extent = built.field.extent().bounds().or(built.parts).ok_or_else(endless)?;
     let mut lattice = prepare::lattice(&extent, options.voxel)?;
     let h = lattice.h;
     let band = match band {
@@ -156,6 +155,14 @@ pub fn field_grid(
         FieldBand::Full => None,
     };
     let room = (band.unwrap_or(0.0) / h).ceil();
+    let most = f64::from(lattice.dims.max_element()) + 2.0 * room;
+    if !(most < f64::from(MAX_VOXELS)) {
+        let reason = format!(
+            "a band of {room} voxels makes a lattice of {most:.0}, and at most {MAX_VOXELS} are possible: \
+             a narrower band, or a larger voxel"
+        );
+        return Err(Error::VoxelSize { reason });
+    }
     lattice.origin -= room * h;
     lattice.dims += 2 * IVec3::splat(room as i32);
     let wanted = FillOptions { band, max_memory: options.max_memory };
@@ -181,13 +188,19 @@ pub fn field_values(field: &Shared, points: &[DVec3]) -> Vec<f64> {
 
 /// The box that holds the shape.
 fn shape_extent(field: &Shared) -> Result<Bounds, Error> {
+    let nothing = || Error::NothingEnclosed { reason: "the field is nowhere negative: nothing is inside".into() };
     match field.extent() {
-        Extent::Within(bounds) => Ok(bounds),
         Extent::Unbounded => Err(endless()),
-        Extent::Empty => {
-            Err(Error::NothingEnclosed { reason: "the field is nowhere negative: nothing is inside".into() })
-        }
+        extent => extent.bounds().ok_or_else(nothing),
     }
+}
+
+/// The voxel spacing that [`field_surface`] takes, model units.
+///
+/// # Errors
+/// Those of [`field_surface`].
+pub fn field_spacing(built: &Built, options: &Options) -> Result<f64, Error> {
+    Ok(prepare::lattice(&shape_extent(&built.field)?, options.voxel)?.h)
 }
 
 fn endless() -> Error {
