@@ -156,7 +156,7 @@ pub fn field_grid(
     };
     let room = (band.unwrap_or(0.0) / h).ceil();
     let most = f64::from(lattice.dims.max_element()) + 2.0 * room;
-    if !(most < f64::from(MAX_VOXELS)) {
+    if most.is_nan() || most >= f64::from(MAX_VOXELS) {
         let reason = format!(
             "a band of {room} voxels makes a lattice of {most:.0}, and at most {MAX_VOXELS} are possible: \
              a narrower band, or a larger voxel"
