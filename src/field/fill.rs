@@ -9,6 +9,7 @@ use rustc_hash::FxHashSet;
 use super::{Ball, Field, Range};
 use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot, brick_of, index_in_brick};
 use crate::progress::{Progress, Stopped};
+use crate::vote::voxel_in_brick;
 
 /// Bricks along a side of the blocks with which the search begins.
 const FIRST: i32 = 8;
@@ -190,9 +191,9 @@ pub(super) fn touches_border(grid: &Grid<f32>, dims: IVec3) -> bool {
     faces.any(|brick| match grid.bricks.slot(brick) {
         Slot::Inside => true,
         Slot::Outside => false,
-        Slot::Active(n) => (0..BRICK_VOXELS as i32).any(|k| {
-            let voxel = BRICK * brick + IVec3::new(k & 7, k >> 3 & 7, k >> 6);
-            on_border(voxel) && voxel.cmple(last).all() && grid.values[n as usize][k as usize] < 0.0
+        Slot::Active(n) => (0..BRICK_VOXELS).any(|k| {
+            let voxel = BRICK * brick + voxel_in_brick(k);
+            on_border(voxel) && voxel.cmple(last).all() && grid.values[n as usize][k] < 0.0
         }),
     })
 }

@@ -7,6 +7,7 @@ use super::Field;
 use crate::contour::Edge;
 use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick};
 use crate::progress::{Progress, Stopped};
+use crate::vote::voxel_in_brick;
 
 /// A point whose value is nearer to zero than this, h, is on the level.
 const AT_LEVEL: f64 = 1e-6;
@@ -34,13 +35,12 @@ struct Search {
 
 impl Search {
     fn next(&mut self) -> DVec3 {
-        let (low, high) = (self.low, self.high);
-        let t = low.0 + (high.0 - low.0) * (low.1 / (low.1 - high.1));
-        let within = t > low.0 && t < high.0 && high.0 - low.0 > 1e-12;
+        let (t, low, high) = (self.place(), self.low.0, self.high.0);
+        let within = t > low && t < high && high - low > 1e-12;
         if !within {
-            self.found = Some(t.clamp(low.0, high.0));
+            self.found = Some(t.clamp(low, high));
         }
-        self.ends[0].lerp(self.ends[1], self.place())
+        self.ends[0].lerp(self.ends[1], t)
     }
 
     /// Where the straight line between the ends is zero.
@@ -114,8 +114,8 @@ fn edges(grid: &Grid<f32>, lattice: &Lattice, brick: IVec3) -> Vec<Edge> {
         let held = voxel.cmpge(IVec3::ZERO).all() && voxel.cmplt(lattice.dims).all();
         held && grid.get(voxel) < 0.0
     };
-    for n in 0..BRICK_VOXELS as i32 {
-        let voxel = BRICK * brick + IVec3::new(n & 7, n >> 3 & 7, n >> 6);
+    for n in 0..BRICK_VOXELS {
+        let voxel = BRICK * brick + voxel_in_brick(n);
         let own = inside(voxel);
         for axis in 0..3u8 {
             let step = IVec3::AXES[axis as usize];

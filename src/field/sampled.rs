@@ -10,6 +10,7 @@ use crate::io::{GridFile, GridValues, SparseValues};
 use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot, brick_of, index_in_brick};
 use crate::mesh::Bounds;
 use crate::progress::{Progress, Stopped};
+use crate::vote::voxel_in_brick;
 
 /// Bricks that a ball may meet, along an axis, for its range to be looked up in each; larger ones are bounded by the steepness.
 const MOST_BRICKS: i32 = 6;
@@ -270,9 +271,8 @@ pub fn dense(values: &[f32], dims: IVec3) -> Grid<f32> {
     let bricks = Bricks::new((0..ends.element_product()).map(brick));
     let of = |&brick: &IVec3| {
         std::array::from_fn(|n| {
-            let n = n as i32;
             // Voxels of the last bricks beyond the lattice repeat its border.
-            let voxel = (BRICK * brick + IVec3::new(n & 7, n >> 3 & 7, n >> 6)).min(dims - 1);
+            let voxel = (BRICK * brick + voxel_in_brick(n)).min(dims - 1);
             let [x, y, z] = voxel.to_array().map(|k| k as usize);
             let [width, height, _] = dims.to_array().map(|k| k as usize);
             values.get(x + width * (y + height * z)).copied().unwrap_or(f32::INFINITY)

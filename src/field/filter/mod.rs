@@ -180,12 +180,9 @@ impl Filtered {
     }
 
     /// For each of the points, whose values and sizes of the kernel are given, the mean of the sampled values, or as much
-    /// of it as the displacements' weights are. All points are displaced by the same sample before the next: so displaced
-    /// they stay as near each other as they are.
+    /// of it as the displacements' weights are.
     fn means(&self, points: &[Spread], displacements: &[Displacement], room: &mut Room) -> Vec<f64> {
-        let displaced = displacements.iter().flat_map(|d| points.iter().map(|at| at.p - d.by * at.size));
-        room.points.clear();
-        room.points.extend(displaced);
+        room.displace(points, displacements);
         room.values.resize(room.points.len(), 0.0);
         self.inner.values(&room.points, &mut room.values);
         let mut means = vec![0.0; points.len()];
@@ -225,9 +222,7 @@ impl Filtered {
 
     /// Filtered values with gradients, all by the same displacements: ∇g = Σ w (∇f − (∇f · s) ∇h) at the displaced points.
     fn filter_samples(&self, points: &[Spread], displacements: &[Displacement], room: &mut Room) -> Vec<Sample> {
-        let displaced = displacements.iter().flat_map(|d| points.iter().map(|at| at.p - d.by * at.size));
-        room.points.clear();
-        room.points.extend(displaced);
+        room.displace(points, displacements);
         room.samples.resize(room.points.len(), Sample::default());
         self.inner.samples(&room.points, &mut room.samples);
         let mut sums = vec![Sample::default(); points.len()];
@@ -291,6 +286,14 @@ struct Room {
     points: Vec<DVec3>,
     values: Vec<f64>,
     samples: Vec<Sample>,
+}
+
+impl Room {
+    /// All points displaced by the first sample, then by the next: so displaced they stay as near each other as they are.
+    fn displace(&mut self, points: &[Spread], displacements: &[Displacement]) {
+        self.points.clear();
+        self.points.extend(displacements.iter().flat_map(|d| points.iter().map(|at| at.p - d.by * at.size)));
+    }
 }
 
 impl Field for Filtered {
