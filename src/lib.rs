@@ -33,4 +33,5 @@ pub mod picture;
 pub mod pipeline;
 pub mod progress;
 pub mod sdf;
+pub mod shells;
 pub mod vote;

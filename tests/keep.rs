@@ -33,7 +33,7 @@ fn repaired(mesh: &TriMesh, options: &Options) -> Outcome {
 }
 
 fn kept(outcome: &Outcome) -> usize {
-    outcome.report.fit.as_ref().expect("a fit").kept
+    outcome.report.kept()
 }
 
 /// The triangles by their corners' coordinates, each beginning with its smallest corner.

@@ -1,7 +1,7 @@
 //! Limits that a finished run may have passed: the file is usable, but the user must know.
 
 use super::report::RunReport;
-use super::words;
+use super::{summary, words};
 
 /// More than this share of the walls passing between voxels: the resolution does not hold the shape.
 /// A few always do, where a ray grazes an edge: of the meshes in `testdata/`, and of scans and parts
@@ -28,6 +28,9 @@ pub fn broken(report: &RunReport, max_memory: Option<u64>) -> Vec<String> {
                 "{} of the voxels near the surface are a guess: the surface is too open to tell inside from outside",
                 words::percent(vote.doubtful, vote.voxels)
             ));
+        }
+        if let Some(topology) = pipeline.topology.as_ref().filter(|topology| topology.is_large()) {
+            sentences.push(format!("the result is not what the input describes: {}", summary::changes(topology).join("; ")));
         }
     }
     match (report.peak_memory_bytes.or_else(super::report::peak_memory), max_memory) {

@@ -1,6 +1,9 @@
 //! What `repair`, the booleans and `csg` share: from files to one verified file.
 
+use std::borrow::Cow;
 use std::path::Path;
+
+use glam::DVec3;
 
 use serde_json::json;
 
@@ -12,12 +15,12 @@ use super::length::{Scale, Simplify};
 use super::output::{Target, write_verified};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
-use super::{backend, limits, summary};
+use super::{backend, limits, summary, words};
 use crate::fit::FitOptions;
 use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
-use crate::pipeline::{self, Options, Outcome, TriangleSource, VoxelSize};
+use crate::pipeline::{self, Options, Outcome, Precision, TriangleSource, VoxelSize};
 use crate::sdf::{RobustOptions, Trust};
 use crate::vote::VoteRule;
 
@@ -54,7 +57,7 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
         input.entry.name = Some(name.clone());
     }
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
-    let (options, scale) = options(args, unit, &inputs)?;
+    let (options, scale) = options(args, unit, &inputs, target.as_ref())?;
     backend::check_built(args.backend)?;
     report.options = resolved(args, unit, &options);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
@@ -65,7 +68,12 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
     make(job, &inputs, (&options, &scale), target.as_ref(), session, report)
 }
 
-fn options(args: &SolidArgs, unit: Option<Unit>, inputs: &[Input]) -> Result<(Options, Scale), Failure> {
+fn options(
+    args: &SolidArgs,
+    unit: Option<Unit>,
+    inputs: &[Input],
+    target: Option<&Target>,
+) -> Result<(Options, Scale), Failure> {
     let bounds = inputs.iter().filter_map(|input| input.loaded.mesh.bounds()).reduce(|a, b| a.union(&b));
     let diagonal = bounds.as_ref().map_or(0.0, Bounds::diagonal);
     let voxel = match &args.voxel {
@@ -83,6 +91,7 @@ fn options(args: &SolidArgs, unit: Option<Unit>, inputs: &[Input]) -> Result<(Op
         collapse: !args.no_collapse,
         max_memory: args.max_memory,
         backend: args.backend.into(),
+        precision: target.map_or(Precision::Double, |target| Precision::of_format(target.options.format)),
         ..Options::new(voxel)
     };
     Ok((options, scale))
@@ -104,7 +113,7 @@ fn fit(args: &SolidArgs, scale: &Scale, inputs: &[Input]) -> Result<Option<FitOp
         _ if inputs.iter().any(varying) => 0.0,
         _ => usual.tolerance,
     };
-    let kept_tolerance = if args.simplify.is_some() { tolerance } else { usual.kept_tolerance.min(tolerance) };
+    let kept_tolerance = if args.simplify.is_some() { tolerance } else { usual.kept_tolerance };
     Ok((!args.no_fit).then_some(FitOptions { keep: !args.rebuild, tolerance, kept_tolerance, ..usual }))
 }
 
@@ -124,6 +133,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
         "backend": options.backend,
         "collapse": options.collapse,
         "fit": options.fit.is_some(),
+        "precision": options.precision,
         "simplify_voxels": options.fit.map(|fit| fit.tolerance),
         "simplify_as_given": args.simplify.map(|simplify| simplify.to_string()),
         "threads": rayon::current_num_threads(),
@@ -219,11 +229,33 @@ pub(super) fn write(
 ) -> Result<(), Failure> {
     let lost = colours.and_then(|c| super::convert::lost_colours(c, mesh, target.options.format));
     report.warnings.extend(lost);
+    let (stored, moved) = stored(mesh, target.options.format);
+    if let Some(moved) = moved {
+        report.warnings.push(rounding(moved, target.options.format));
+    }
     let (entry, validity) = report.timed("write and verify", |_| {
-        write_verified(target, mesh, colours, session, |read| judge(read, mesh, session))
+        write_verified(target, &stored, colours, session, |read| judge(read, &stored, moved, session))
     })?;
     report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
     Ok(())
+}
+
+/// The mesh with the numbers that a format holds, and how far the farthest vertex moves for it, model units.
+fn stored(mesh: &TriMesh, format: Format) -> (Cow<'_, TriMesh>, Option<f64>) {
+    let round = |p: DVec3| p.as_vec3().as_dvec3();
+    let moved = mesh.positions.iter().map(|&p| p.distance(round(p))).fold(0.0, f64::max);
+    if !format.is_single() || moved == 0.0 {
+        return (Cow::Borrowed(mesh), None);
+    }
+    let positions = mesh.positions.iter().map(|&p| round(p)).collect();
+    (Cow::Owned(TriMesh { positions, triangles: mesh.triangles.clone() }), Some(moved))
+}
+
+fn rounding(moved: f64, format: Format) -> String {
+    format!(
+        "{format} holds single precision: so far from the origin it moves vertices by up to {}; OBJ, PLY, OFF and 3MF keep them",
+        words::number(moved)
+    )
 }
 
 /// What is original, and what closes a hole.
@@ -253,19 +285,25 @@ fn write_map(path: &Path, outcome: &Outcome, canal_of: &[u32], session: &Session
         .map_err(|e| Failure::internal(e.to_string()))
 }
 
-/// Whether the file as read back holds the mesh that was made, and keeps the program's promise.
-fn judge(read: &Loaded, made: &TriMesh, session: &Session) -> Result<Validity, Failure> {
+/// Whether the file as read back holds the mesh that was made, and keeps the program's promise. `moved`: how far rounding to the
+/// numbers of the format moved vertices.
+fn judge(read: &Loaded, made: &TriMesh, moved: Option<f64>, session: &Session) -> Result<Validity, Failure> {
     check_same(&read.mesh, made)?;
     let options = ValidateOptions { self_intersections: true, weld: input::is_soup_format(read.format) };
     let validity = validate(&read.mesh, &options, &session.progress)?;
     if validity.is_valid() {
         return Ok(validity);
     }
-    Err(Failure::new(
-        Exit::Limit,
-        format!("the result is not a valid solid ({}); it was not written", validity.problems().join("; ")),
-    )
-    .hint("another --resolution or --voxel; and please report it: this should not happen"))
+    let problems = validity.problems().join("; ");
+    let failure = Failure::new(Exit::Limit, format!("the result is not a valid solid ({problems}); it was not written"));
+    Err(match moved {
+        Some(moved) => failure.hint(format!(
+            "{} moves vertices by up to {} so far from the origin: write OBJ, PLY, OFF or 3MF, or move the model to the origin first",
+            read.format,
+            words::number(moved)
+        )),
+        None => failure.hint("another --resolution or --voxel; and please report it: this should not happen"),
+    })
 }
 
 /// Whether two meshes have the same triangles, in the same order, at exactly the same places.

@@ -7,7 +7,7 @@ use super::words::{self, UnitName};
 use crate::io::{Loaded, Unit};
 use crate::mesh::Validity;
 use crate::morphology::Operation;
-use crate::pipeline::{Plan, Report, ThickenReport};
+use crate::pipeline::{Plan, Report, ThickenReport, ThinRegion, TopologyReport};
 
 /// A label and what stands behind it; rows of one block are aligned.
 pub type Row = (&'static str, String);
@@ -40,8 +40,15 @@ fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
     let mut rows = input_rows(report);
     if let Some(pipeline) = &report.pipeline {
         rows.extend(done(pipeline, unit).into_iter().map(|text| ("done", text)));
-        rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
+        if pipeline.lattice {
+            rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
+        }
         rows.extend(thin(pipeline, unit).map(|text| ("thin", text)));
+        rows.extend(thin_places(pipeline, unit).into_iter().map(|text| ("thin", text)));
+        if let Some(topology) = &pipeline.topology {
+            rows.extend(changes(topology).into_iter().map(|text| ("changed", text)));
+            rows.extend(lost_bodies(topology, unit).into_iter().map(|text| ("lost", text)));
+        }
     }
     rows.extend(result_rows(report, unit));
     rows.push(time(report));
@@ -124,14 +131,7 @@ fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
         let share = words::percent(pipeline.ldi.silent_rays, pipeline.ldi.rays);
         parts.push(format!("{share} of the rays met a hole or a crack; others decided in their place"));
     }
-    match pipeline.fit.as_ref().filter(|fit| fit.kept > 0) {
-        Some(fit) if fit.kept == fit.of => parts.push("every triangle was kept as it is".into()),
-        Some(fit) => {
-            let (kept, of) = (words::count(fit.kept), words::plural(fit.of, "triangle"));
-            parts.push(format!("{kept} of {of} kept as they are; the surface between them was built anew"));
-        }
-        None => parts.push("the surface was built anew".into()),
-    }
+    parts.extend(kept(pipeline));
     if let Some(fit) = pipeline.fit.as_ref().filter(|fit| fit.kept < fit.of) {
         let points = words::plural(fit.inserted + fit.moved, "point");
         let given_up = match fit.given_up {
@@ -164,6 +164,83 @@ fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
         parts.push(format!("{triangles} of the result close holes (--map shows them)"));
     }
     parts
+}
+
+/// What stayed as it is.
+fn kept(pipeline: &Report) -> Vec<String> {
+    let standing = &pipeline.standing;
+    let mut parts = Vec::new();
+    if standing.left_out > 0 {
+        let shells = words::plural(standing.left_out, "closed surface");
+        parts.push(format!("{shells} left out, inside of others or outside of the result"));
+    }
+    parts.push(match (pipeline.kept(), pipeline.of()) {
+        (0, _) => "the surface was built anew".into(),
+        (kept, of) if kept == of => "every triangle was kept as it is".into(),
+        (kept, of) => {
+            let (kept, of) = (words::count(kept), words::plural(of, "triangle"));
+            format!("{kept} of {of} kept as they are; the surface between them was built anew")
+        }
+    });
+    parts
+}
+
+/// What became of the bodies, where it is not what the operands describe.
+pub fn changes(topology: &TopologyReport) -> Vec<String> {
+    let mut parts = Vec::new();
+    let (before, after) = (topology.before, topology.after);
+    let mut add = |count: usize, one: &str, many: &str| match count {
+        0 => {}
+        1 => parts.push(one.to_string()),
+        n => parts.push(format!("{} {many}", words::count(n))),
+    };
+    add(topology.lost_count, "1 body is gone", "bodies are gone");
+    add(topology.fused, "2 bodies that do not touch came out as one", "bodies came out joined with others that they do not touch");
+    add(topology.parted - topology.crumbs, "1 piece came off a body", "pieces came off bodies");
+    add(topology.crumbs, "1 crumb was made beside a body", "crumbs were made beside bodies");
+    let tunnels = topology.new_tunnels.unwrap_or(0).max(0) as usize;
+    add(tunnels, "1 tunnel is new", "tunnels are new");
+    if let Some(before) = before.filter(|_| !parts.is_empty()) {
+        let count = |t: &crate::pipeline::Topology| {
+            let tunnels = words::plural(t.tunnels.max(0) as usize, "tunnel");
+            format!("{}, {}, {tunnels}", words::plural(t.bodies, "body"), words::plural(t.voids, "void"))
+        };
+        parts.push(format!("before: {}; after: {}", count(&before), count(&after)));
+    }
+    parts
+}
+
+/// As many lost bodies, and thin places, are told; the report has more.
+const TOLD: usize = 3;
+
+fn lost_bodies(topology: &TopologyReport, unit: UnitName<'_>) -> Vec<String> {
+    let told = |lost: &crate::pipeline::LostBody| {
+        let what = if lost.void { "void" } else { "body" };
+        let place = lost.at.map(words::number).join(" ");
+        format!("a {what} of {} at {place}", words::length(lost.size, unit))
+    };
+    topology.lost.iter().take(TOLD).map(told).collect()
+}
+
+/// Where walls and gaps are thinner than the lattice holds.
+fn thin_places(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
+    let told = |region: &ThinRegion| {
+        let what = if region.gap { "gap" } else { "wall" };
+        let middle: [f64; 3] = std::array::from_fn(|axis| (region.min[axis] + region.max[axis]) / 2.0);
+        let size: [f64; 3] = std::array::from_fn(|axis| region.max[axis] - region.min[axis]);
+        format!(
+            "a {what} down to {} around {} ({} across): under 2 voxels, look there",
+            words::length(region.thinnest, unit),
+            middle.map(words::number).join(" "),
+            words::size(size, unit)
+        )
+    };
+    let mut rows: Vec<String> = pipeline.thin.regions.iter().take(TOLD).map(told).collect();
+    match pipeline.thin.regions.len().saturating_sub(TOLD) {
+        0 => {}
+        more => rows.push(format!("and {} more (--report has them)", words::plural(more, "place"))),
+    }
+    rows
 }
 
 fn thickened(thick: &ThickenReport, made: usize, unit: UnitName<'_>) -> String {

@@ -22,9 +22,11 @@ mod safeguard;
 mod sharpen;
 mod simplify;
 mod snap;
+mod source;
 mod surface;
 
 pub use facets::{Facets, Side, Sides, Wanted};
+pub use source::simplified_source;
 pub use surface::{NOT_KEPT, Surface};
 
 use crate::ldi::Evidence;
@@ -42,13 +44,13 @@ pub struct FitOptions {
     /// How far simplification may take the surface away, h; 0 keeps all triangles. Fandisk at 256: 0.002 leaves
     /// 73,000 triangles, 0.003 64,000 with a mean error 0.00003 h larger.
     pub tolerance: f64,
-    /// The same for the source's own vertices, where they are kept, h: enough for flat parts and no more.
+    /// The same for the source's own vertices, where they are kept, h; 0 keeps all of them.
     pub kept_tolerance: f64,
 }
 
 impl Default for FitOptions {
     fn default() -> Self {
-        Self { keep: true, sag: 0.02, tolerance: 0.002, kept_tolerance: 1e-4 }
+        Self { keep: true, sag: 0.02, tolerance: 0.002, kept_tolerance: 0.0 }
     }
 }
 

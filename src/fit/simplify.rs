@@ -236,7 +236,7 @@ impl Work<'_> {
     fn cost(&self, vertex: u32, to: u32) -> f64 {
         let p = self.at[to as usize];
         let cost = self.quadrics[vertex as usize].at(p) + self.quadrics[to as usize].at(p);
-        if self.surface.is_kept(vertex) && cost > self.most_kept {
+        if self.surface.is_kept(vertex) && (cost > self.most_kept || self.most_kept == 0.0) {
             return f64::INFINITY;
         }
         let length = p.distance_squared(self.at[vertex as usize]);

@@ -28,6 +28,11 @@ pub enum Format {
 }
 
 impl Format {
+    /// Whether coordinates are stored in single precision (STL, GLB and glTF); the other formats hold `f64`.
+    pub fn is_single(self) -> bool {
+        matches!(self, Self::Stl | Self::Glb | Self::Gltf)
+    }
+
     /// Every format.
     pub const ALL: [Self; 7] = [Self::Stl, Self::Obj, Self::Ply, Self::Off, Self::Glb, Self::Gltf, Self::ThreeMf];
 

@@ -200,8 +200,7 @@ fn check(mesh: &TriMesh, format: Format) -> Result<(), WriteError> {
     if let Some(triangle) = mesh.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= count)) {
         return Err(WriteProblem::BadIndex { triangle }.into());
     }
-    let single = matches!(format, Format::Stl | Format::Glb | Format::Gltf);
-    let holds = |x: f64| if single { (x as f32).is_finite() } else { x.is_finite() };
+    let holds = |x: f64| if format.is_single() { (x as f32).is_finite() } else { x.is_finite() };
     for (vertex, p) in mesh.positions.iter().enumerate() {
         if let Some(value) = p.to_array().into_iter().find(|&x| !holds(x)) {
             return Err(WriteProblem::Coordinate { vertex, value, format }.into());

@@ -18,7 +18,7 @@ pub use layers::{Hit, Layers, MAX_CROSSINGS, MAX_TRIANGLES};
 pub use raster::{MAX_VOXELS, SNAP_BITS, rasterise, snap};
 pub(crate) use spans::balanced_alone;
 pub use spans::{Balance, Operands, Spans, TIE, balance, spans};
-pub use thin::{Lengths, THIN, lengths, widths};
+pub use thin::{Lengths, THIN, ThinPlace, lengths, thin_places, widths};
 
 use rayon::prelude::*;
 

@@ -23,13 +23,13 @@ pub(super) fn scale_of(largest: f64) -> f64 {
 }
 
 /// [`scale_of`] for all used vertices of a mesh.
-pub(super) fn scale_of_mesh(mesh: &TriMesh) -> f64 {
+pub(crate) fn scale_of_mesh(mesh: &TriMesh) -> f64 {
     scale_of(mesh.bounds().map_or(0.0, |b| b.min.abs().max(b.max.abs()).max_element()))
 }
 
 /// On which side of the plane through `a`, `b`, `c` (seen counter-clockwise from its positive side)
 /// `p` lies: positive, negative, or 0 for exactly in the plane. Exact sign.
-pub(super) fn side_of_plane([a, b, c]: &[DVec3; 3], p: DVec3) -> f64 {
+pub(crate) fn side_of_plane([a, b, c]: &[DVec3; 3], p: DVec3) -> f64 {
     let (u, v, w) = (*a - p, *b - p, *c - p);
     let (bc, cb) = (v.x * w.y, w.x * v.y);
     let (ca, ac) = (w.x * u.y, u.x * w.y);
@@ -50,7 +50,7 @@ pub(super) fn side_of_plane([a, b, c]: &[DVec3; 3], p: DVec3) -> f64 {
 
 /// On which side of the line from `a` to `b` the point `p` lies: positive (left), negative, or 0 for
 /// exactly on the line. Exact sign.
-pub(super) fn side_of_line(a: DVec2, b: DVec2, p: DVec2) -> f64 {
+pub(crate) fn side_of_line(a: DVec2, b: DVec2, p: DVec2) -> f64 {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
     robust::orient2d(coord(a), coord(b), coord(p))
 }

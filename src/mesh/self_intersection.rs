@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
+use rustc_hash::FxHashSet;
 
 use super::TriMesh;
 use super::edges::copies;
@@ -44,12 +45,38 @@ pub fn intersecting_triangles(mesh: &TriMesh, progress: &Progress) -> Result<Vec
     let scene = Scene::new(mesh);
     let flags = Flags::new(&scene);
     scene.tasks().into_par_iter().try_for_each(|task| scene.visit(task, &mut &flags, progress))?;
-    let hit = flags.faces.iter().zip(&scene.items).filter(|(flag, _)| flag.load(Ordering::Relaxed));
-    let mut found: Vec<u32> = hit.map(|(_, item)| item.id).collect();
-    found.extend(scene.copies.iter().flatten());
-    found.par_sort_unstable();
-    found.dedup();
-    Ok(found)
+    Ok(flags.found(&scene))
+}
+
+/// What [`intersecting_groups`] found.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Groups {
+    /// The triangles that intersect another one, ascending.
+    pub(crate) triangles: Vec<u32>,
+    /// The pairs of groups of which triangles intersect, the smaller first, sorted; a group with itself, too.
+    pub(crate) pairs: Vec<[u32; 2]>,
+}
+
+/// [`intersecting_triangles`], and which groups of triangles meet by them; `group` has a number for each triangle.
+/// Memory stays proportional to the mesh and to the pairs of groups.
+pub(crate) fn intersecting_groups(mesh: &TriMesh, group: &[u32], progress: &Progress) -> Result<Groups, Stopped> {
+    let scene = Scene::new(mesh);
+    let flags = Flags::new(&scene);
+    let lists = scene.tasks().into_par_iter().map(|task| {
+        let mut sink = Grouped { flags: &flags, group, pairs: FxHashSet::default() };
+        scene.visit(task, &mut sink, progress).map(|()| sink.pairs)
+    });
+    let lists: Vec<FxHashSet<[u32; 2]>> = lists.collect::<Result<_, _>>()?;
+    let mut pairs: Vec<[u32; 2]> = lists.into_iter().flatten().collect();
+    let of_copy = |&[copy, first]: &[u32; 2]| sorted_pair(group[copy as usize], group[first as usize]);
+    pairs.extend(scene.copies.iter().map(of_copy));
+    pairs.par_sort_unstable();
+    pairs.dedup();
+    Ok(Groups { triangles: flags.found(&scene), pairs })
+}
+
+fn sorted_pair(a: u32, b: u32) -> [u32; 2] {
+    [a.min(b), a.max(b)]
 }
 
 /// A box in single precision. Coordinates went through one monotone map, so boxes that overlap in
@@ -98,7 +125,7 @@ trait Sink {
     /// Whether nothing more can be learnt from this pair of subtrees.
     fn settled(&self, task: Task) -> bool;
     /// Whether nothing more can be learnt from this pair of items.
-    fn known(&self, items: [usize; 2]) -> bool;
+    fn known(&self, scene: &Scene, items: [usize; 2]) -> bool;
     /// Items `items` intersect.
     fn hit(&mut self, scene: &Scene, items: [usize; 2]);
     /// This pair of subtrees has been searched.
@@ -112,7 +139,7 @@ impl Sink for Pairs {
         false
     }
 
-    fn known(&self, _: [usize; 2]) -> bool {
+    fn known(&self, _: &Scene, _: [usize; 2]) -> bool {
         false
     }
 
@@ -138,6 +165,16 @@ impl Flags {
         Self { faces: cleared(scene.items.len()), nodes: scene.levels.iter().map(|l| cleared(l.len())).collect() }
     }
 
+    /// The triangles that are known to intersect, copies among them, ascending.
+    fn found(&self, scene: &Scene) -> Vec<u32> {
+        let hit = self.faces.iter().zip(&scene.items).filter(|(flag, _)| flag.load(Ordering::Relaxed));
+        let mut found: Vec<u32> = hit.map(|(_, item)| item.id).collect();
+        found.extend(scene.copies.iter().flatten());
+        found.par_sort_unstable();
+        found.dedup();
+        found
+    }
+
     fn whole(&self, level: usize, node: usize) -> bool {
         self.nodes[level][node].load(Ordering::Relaxed)
     }
@@ -161,7 +198,7 @@ impl Sink for &Flags {
         nodes.iter().all(|&n| self.whole(level, n))
     }
 
-    fn known(&self, items: [usize; 2]) -> bool {
+    fn known(&self, _: &Scene, items: [usize; 2]) -> bool {
         items.iter().all(|&i| self.faces[i].load(Ordering::Relaxed))
     }
 
@@ -172,6 +209,38 @@ impl Sink for &Flags {
     fn leave(&self, Task { level, nodes }: Task) {
         nodes.iter().for_each(|&n| self.update(level, n));
     }
+}
+
+/// Flags, and the pairs of groups that one task has found. A pair of groups that is known already is looked at again only
+/// for the sake of its triangles.
+struct Grouped<'a> {
+    flags: &'a Flags,
+    group: &'a [u32],
+    pairs: FxHashSet<[u32; 2]>,
+}
+
+impl Grouped<'_> {
+    fn pair(&self, scene: &Scene, items: [usize; 2]) -> [u32; 2] {
+        let [a, b] = items.map(|i| self.group[scene.items[i].id as usize]);
+        sorted_pair(a, b)
+    }
+}
+
+impl Sink for Grouped<'_> {
+    fn settled(&self, _: Task) -> bool {
+        false
+    }
+
+    fn known(&self, scene: &Scene, items: [usize; 2]) -> bool {
+        (&self.flags).known(scene, items) && self.pairs.contains(&self.pair(scene, items))
+    }
+
+    fn hit(&mut self, scene: &Scene, items: [usize; 2]) {
+        (&mut &*self.flags).hit(scene, items);
+        self.pairs.insert(self.pair(scene, items));
+    }
+
+    fn leave(&self, _: Task) {}
 }
 
 /// The triangles in Morton order and a binary tree of boxes over them: node n of a level holds nodes
@@ -276,7 +345,7 @@ impl Scene {
         for i in range(a) {
             let others = if a == b { i + 1..range(b).end } else { range(b) };
             for j in others {
-                if self.boxes[i].overlaps(&self.boxes[j]) && !sink.known([i, j]) && self.meet(i, j) {
+                if self.boxes[i].overlaps(&self.boxes[j]) && !sink.known(self, [i, j]) && self.meet(i, j) {
                     sink.hit(self, [i, j]);
                 }
             }

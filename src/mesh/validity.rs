@@ -217,6 +217,11 @@ pub(super) fn degenerate(mesh: &TriMesh, triangles: &[[u32; 3]]) -> impl Iterato
     (0..triangles.len()).filter(move |&id| has_repeated_index(triangles[id]) || flat(id)).map(|id| id as u32)
 }
 
+/// Ids of the triangles whose corners are exactly collinear or at one place, ascending.
+pub(crate) fn flat_triangles(mesh: &TriMesh) -> Vec<u32> {
+    degenerate(mesh, &mesh.triangles).collect()
+}
+
 /// Signed volume and area, summed in the order of the triangles.
 fn measures(mesh: &TriMesh) -> (f64, f64) {
     // Seen from the mean corner, far-away meshes lose no digits and open ones have a volume that does not depend on

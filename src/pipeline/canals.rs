@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
+use super::frame::Frame;
 use super::morphology::{Run, usable};
 use super::plan::{Offsets, check_offsets};
-use super::{Error, MorphologyOptions, Options, Outcome, boolean, stages};
+use super::{Error, MorphologyOptions, Options, Outcome, boolean, prepare, stages};
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
 use crate::morphology::{self, Body, Canal, Operation};
@@ -61,11 +62,14 @@ pub struct CanalOutcome {
 /// Those of [`boolean`]; [`Error::VoxelSize`] for a diameter that the lattice cannot hold; [`Error::MissingCanal`].
 pub fn canals(input: &TriMesh, options: &CanalOptions, progress: &Progress) -> Result<CanalOutcome, Error> {
     let radius = usable(options.max_diameter / 2.0)?;
+    let frame = Frame::of(std::slice::from_ref(input));
+    let input = &frame.local(std::slice::from_ref(input))[0];
     check_offsets(input, &options.solid, Offsets { count: 2, radius })?;
     let solid = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let closing = MorphologyOptions { operation: Operation::Close, radius, mitre: None, solid: options.solid.clone() };
     let mut stages = stages::Stages::new(progress);
-    let run = Run { solid: &solid.mesh, h: solid.lattice.h, options: &closing, progress };
+    let h = prepare::spacing(&prepare::bounds(std::slice::from_ref(input))?, options.solid.voxel)?;
+    let run = Run { solid: &solid.mesh, h, options: &closing, progress };
 
     let body = Body::new(&solid.mesh, None);
     let dilated = run.there(&body, radius, &mut stages)?;
@@ -92,7 +96,7 @@ pub fn canals(input: &TriMesh, options: &CanalOptions, progress: &Progress) -> R
         roundings: canals.roundings,
         removed,
     });
-    Ok(CanalOutcome { outcome, canal_of })
+    Ok(CanalOutcome { outcome: frame.global(outcome), canal_of })
 }
 
 /// The numbers that are meant, of `count`.

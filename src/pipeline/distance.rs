@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::backend::{self, PrismError};
+use super::frame::Frame;
 use super::plan::Input;
 use super::{Backend, BackendReport, Error, StageTime, VoxelSize, prepare, solid, stages};
 use crate::lattice::{BRICK, Grid, Lattice, Slot};
@@ -150,6 +151,8 @@ pub fn plan_distance(input: &TriMesh, options: &DistanceOptions) -> Result<Dista
 /// # Errors
 /// See [`Error`].
 pub fn distance(input: &TriMesh, options: &DistanceOptions, progress: &Progress) -> Result<DistanceOutcome, Error> {
+    let frame = Frame::of(std::slice::from_ref(input));
+    let input = &frame.local(std::slice::from_ref(input))[0];
     let (lattice, band) = place(input, options)?;
     let needed = plan(input, &lattice, band, options).memory;
     if let Some(allowed) = options.max_memory.filter(|&allowed| needed > allowed) {
@@ -176,7 +179,8 @@ pub fn distance(input: &TriMesh, options: &DistanceOptions, progress: &Progress)
         _ => run.of_soup(input, &mut stages, &mut report)?,
     };
     report.stages = stages.finish();
-    let mut outcome = DistanceOutcome { field, lattice, report };
+    let mut outcome = DistanceOutcome { field, lattice: frame.global_lattice(lattice), report };
+    outcome.report.vote.iter_mut().for_each(|vote| frame.votes(vote));
     outcome.describe(band);
     Ok(outcome)
 }

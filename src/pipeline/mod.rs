@@ -1,20 +1,25 @@
 //! The pipelines: short functions that read like the drawing in the crate's documentation.
 
+mod apart;
 mod backend;
 mod canals;
 mod colours;
 mod distance;
 mod field;
+mod frame;
 mod morphology;
 mod plan;
 mod prepare;
+mod rebuild;
 mod refine;
 mod report;
 mod solid;
 mod stages;
 mod thicken;
 mod thickness;
+mod topology;
 
+pub use apart::StandingReport;
 pub use backend::{Backend, BackendReport};
 pub use canals::{CanalOptions, CanalOutcome, CanalReport, Remove, canals};
 pub use colours::{carry_colours, classes};
@@ -28,22 +33,24 @@ pub use field::{
 };
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
 pub use plan::{plan, plan_canals, plan_morphology, plan_thicken};
-pub use report::{LdiReport, Report, StageTime, ThinReport};
+pub use report::{LdiReport, Report, StageTime, ThinRegion, ThinReport};
 pub use thicken::{SheetSide, ThickenOptions, ThickenReport, thicken};
 pub use thickness::{LengthsReport, ThicknessReport, thickness};
+pub use topology::{LostBody, Topology, TopologyReport};
 
-use rayon::prelude::*;
+use apart::Apart;
+use frame::Frame;
+use serde::Serialize;
 
-use crate::contour::{ContourOptions, contour};
 use crate::field::filter::FilterError;
-use crate::fit::{Facets, FitOptions, fit};
+use crate::fit::FitOptions;
 use crate::lattice::Lattice;
-use crate::ldi::{Evidence, Expression, Spans, spans};
+use crate::ldi::Expression;
 use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
 use crate::progress::{Progress, Stopped};
-use crate::sdf::{self, RobustOptions};
-use crate::vote::{Jury, VoteRule, Winding, vote_near_surface};
+use crate::sdf::RobustOptions;
+use crate::vote::VoteRule;
 
 /// The voxel size of a pipeline. There is no default: it decides what is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,6 +59,13 @@ pub enum VoxelSize {
     Along(u32),
     /// This spacing, model units.
     Length(f64),
+}
+
+impl Precision {
+    /// What a format holds.
+    pub fn of_format(format: crate::io::Format) -> Self {
+        if format.is_single() { Self::Single } else { Self::Double }
+    }
 }
 
 impl VoxelSize {
@@ -86,6 +100,20 @@ pub struct Options {
     pub max_memory: Option<u64>,
     /// Which processor makes the layered depth images.
     pub backend: Backend,
+    /// What numbers the result may have: those of the format that it is for.
+    pub precision: Precision,
+}
+
+/// What numbers a result may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    /// Every coordinate is an `f32`, so that STL and glTF hold it unchanged, and the result is valid with these; only for operands far from the
+    /// origin, which are worked on near it, coordinates get the offset back and have more digits.
+    Single,
+    /// What stays as it was keeps its `f64` coordinates; what is made has those of an `f32`, seen from near the operands.
+    #[default]
+    Double,
 }
 
 impl Options {
@@ -101,6 +129,7 @@ impl Options {
             classes: Vec::new(),
             max_memory: None,
             backend: Backend::default(),
+            precision: Precision::default(),
         }
     }
 }
@@ -108,11 +137,11 @@ impl Options {
 /// A finished mesh and how it came about.
 #[derive(Debug, Clone)]
 pub struct Outcome {
-    /// The result; every coordinate is exactly an `f32`, so that any format holds it unchanged.
+    /// The result; for its coordinates see [`Precision`].
     pub mesh: TriMesh,
     /// Where each triangle comes from.
     pub sources: Vec<TriangleSource>,
-    /// The lattice that was used.
+    /// The lattice on which surface was made; without voxels where none was, see [`Report::lattice`].
     pub lattice: Lattice,
     /// What was found and done.
     pub report: Report,
@@ -227,7 +256,11 @@ pub fn repair(input: &TriMesh, options: &Options, progress: &Progress) -> Result
     boolean(std::slice::from_ref(input), &Expression::Operand(0), options, progress)
 }
 
-/// Evaluates a boolean expression over operands, each of which may be broken.
+/// Evaluates a boolean expression over operands, each of which may be broken. Shells that are closed and touch nothing stay as they
+/// are; rays and voxels decide about the rest.
+///
+/// # Errors
+/// See [`Error`].
 pub fn boolean(
     operands: &[TriMesh],
     expression: &Expression,
@@ -238,55 +271,26 @@ pub fn boolean(
     if needed > operands.len() {
         return Err(Error::MissingOperand { operand: needed - 1, given: operands.len() });
     }
-    let lattice = prepare::lattice(&prepare::bounds(operands)?, options.voxel)?;
-    plan::check_limits(operands, &lattice, options, plan::Offsets::default())?;
+    let frame = Frame::of(operands);
+    let operands = &*frame.local(operands);
+    let h = prepare::spacing(&prepare::bounds(operands)?, options.voxel)?;
     let mut stages = stages::Stages::new(progress);
-
     stages.begin("orient")?;
-    let mut soup = prepare::prepare(operands, options.orient, progress)?;
-    stages.begin("ldi")?;
-    let crossings = plan::crossings(operands, &lattice);
-    let (mut layers, made_by) = backend::layers(&soup.mesh, &lattice, options.backend, crossings, progress)?;
-    soup.turn_patches(&mut layers, options.orient, progress)?;
-    let hits = solid::count(&layers);
-    stages.begin("spans")?;
-    let mut evidence = Evidence::new(&layers, soup.mesh.triangles.len());
-    let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, expression));
-    let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
-    evidence.add(&spans);
-    solid::refuse_scattered(&spans, hits)?;
-    stages.begin("vote")?;
-    let winding = Winding::new(&soup.mesh, &soup.operands, &lattice, progress);
-    let jury = Jury { spans: &spans, operands: &soup.operands, expression, rule: options.rule, winding: &winding };
-    let votes = vote_near_surface(&jury, progress)?;
-    stages.begin("sdf")?;
-    let distance = sdf::robust(&spans, &soup.planes(&lattice), &votes, &options.robust, progress)?;
-    stages.begin("contour")?;
-    let lid = |inside, outside| refine::lid(&winding, expression, inside, outside);
-    let crossing = solid::crossings(&spans, &distance, lid);
-    let mut raw = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;
-    if raw.mesh.triangles.is_empty() {
-        return Err(Error::NothingEnclosed { reason: solid::why_nothing(&spans, &lattice, hits, operands.len()) });
-    }
-    let lids = refine::lids(&mut raw, (&soup, &lattice), &winding, expression, progress)?;
-    stages.begin("collapse")?;
-    let facets = Facets::new(&soup.mesh, lids).with_classes(soup.classes(&options.classes));
-    let mut surface = refine::merged(raw, &facets, &lattice, options, progress)?;
-    let mut fitted = None;
-    if let Some(options) = &options.fit {
-        stages.begin("fit")?;
-        let (fit, report) = fit(&surface, &facets, &evidence, lattice.h, options, progress)?;
-        surface = fit;
-        fitted = Some(report);
-    }
-
-    let mut report = solid::report(&lattice, &spans, hits, &votes);
-    let sources = refine::sources(&surface, &facets, &soup);
-    report.orient = soup.reports;
-    report.fit = fitted;
-    report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
-    report.ldi.made_by = made_by;
-    report.warnings = solid::warnings(&report);
-    report.stages = stages.finish();
-    Ok(Outcome { mesh: surface.mesh, sources, lattice, report })
+    let soup = prepare::prepare(operands, options.orient, progress)?;
+    stages.begin("shells")?;
+    let mut apart = Apart::find(&soup, expression, options, progress)?;
+    let standing = apart.surface(&soup, operands, options, h, progress)?;
+    let job = rebuild::Job { expression, options, h, progress };
+    let outcome = match apart.split(soup) {
+        (rest, None) => job.alone(rest, h, &mut stages)?,
+        (rest, Some(whole)) => match job.beside(rest, standing, &mut stages)? {
+            Some(outcome) => outcome,
+            None => {
+                // What was made runs into what stands: all of it is made together.
+                apart = apart.none_standing();
+                job.alone(whole, h, &mut stages)?
+            }
+        },
+    };
+    Ok(frame.global(report::finished(outcome, &apart, stages)))
 }

@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
+use super::frame::Frame;
 use super::plan::{Offsets, check_offsets};
-use super::{Error, Options, Outcome, TriangleSource, boolean, refine, stages};
+use super::{Error, Options, Outcome, TriangleSource, boolean, prepare, refine, stages};
 use crate::fit::{Facets, FitOptions, FitReport, Surface, Wanted, fit};
 use crate::lattice::Lattice;
 use crate::ldi::{Evidence, Expression};
@@ -47,17 +48,20 @@ pub struct MorphologyReport {
 /// the lattice cannot hold.
 pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progress) -> Result<Outcome, Error> {
     let radius = usable(options.radius)?;
+    let frame = Frame::of(std::slice::from_ref(input));
+    let input = &frame.local(std::slice::from_ref(input))[0];
     check_offsets(input, &options.solid, Offsets { count: options.operation.offsets(), radius })?;
     let outcome = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let mut stages = stages::Stages::new(progress);
-    let run = Run { solid: &outcome.mesh, h: outcome.lattice.h, options, progress };
+    let h = prepare::spacing(&prepare::bounds(std::slice::from_ref(input))?, options.solid.voxel)?;
+    let run = Run { solid: &outcome.mesh, h, options, progress };
     let made = match options.operation {
         Operation::Dilate => run.one_way(&Body::new(run.solid, options.mitre), radius, &mut stages)?,
         Operation::Erode => run.one_way(&Body::new(run.solid, options.mitre), -radius, &mut stages)?,
         Operation::Close => run.there_and_back(radius, &mut stages)?,
         Operation::Open => run.there_and_back(-radius, &mut stages)?,
     };
-    Ok(run.finish(&outcome, made, stages))
+    Ok(frame.global(run.finish(&outcome, made, stages)))
 }
 
 /// A radius, or why it is none.

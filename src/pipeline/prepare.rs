@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::frame::Frame;
 use super::{Error, VoxelSize};
 use crate::lattice::Lattice;
 use crate::ldi::{Layers, MAX_VOXELS, Operands};
@@ -15,6 +16,7 @@ const LARGEST_COORDINATE: f64 = 1e15;
 const F32_STEPS: f64 = 64.0;
 
 /// The operands, cleaned, made consistent, and put one after another.
+#[derive(Clone)]
 pub(super) struct Soup {
     pub mesh: TriMesh,
     pub operands: Operands,
@@ -108,6 +110,15 @@ pub(super) fn prepare(inputs: &[TriMesh], mode: OrientMode, progress: &Progress)
     Ok(soup)
 }
 
+/// The voxel spacing for operands in `bounds`, model units, or why it is none.
+pub(super) fn spacing(bounds: &Bounds, voxel: VoxelSize) -> Result<f64, Error> {
+    let h = voxel.spacing(bounds.size().max_element());
+    if h > 0.0 && h.is_finite() {
+        return Ok(h);
+    }
+    Err(Error::VoxelSize { reason: format!("a voxel size of {h} cannot be used; it must be a positive length") })
+}
+
 /// The lattice for operands in `bounds`, or why there is none.
 pub(super) fn lattice(bounds: &Bounds, voxel: VoxelSize) -> Result<Lattice, Error> {
     let longest = bounds.size().max_element();
@@ -119,10 +130,7 @@ pub(super) fn lattice(bounds: &Bounds, voxel: VoxelSize) -> Result<Lattice, Erro
              look for damaged vertices, or scale the model down"
         ));
     }
-    let h = voxel.spacing(longest);
-    if !(h > 0.0 && h.is_finite()) {
-        return refuse(format!("a voxel size of {h} cannot be used; it must be a positive length"));
-    }
+    let h = spacing(bounds, voxel)?;
     let coarsest = longest / (MAX_VOXELS - 16) as f64;
     if h < coarsest {
         return refuse(format!(
@@ -132,11 +140,13 @@ pub(super) fn lattice(bounds: &Bounds, voxel: VoxelSize) -> Result<Lattice, Erro
             MAX_VOXELS - 16,
         ));
     }
+    let near = Frame::around(bounds).local_bounds(bounds);
+    let farthest = near.min.abs().max(near.max.abs()).max_element();
     let step = farthest * f64::from(f32::EPSILON);
     if h < F32_STEPS * step {
         return refuse(format!(
-            "coordinates reach {farthest:.4e}, where single precision steps by {step:.1e}: too coarse for a voxel \
-             of {h:.4e}; move the model to the origin or use a voxel of at least {:.1e}",
+            "a voxel of {h:.4e} is finer than single precision resolves a model of this size, which is {step:.1e}: \
+             use a voxel of at least {:.1e}",
             F32_STEPS * step
         ));
     }

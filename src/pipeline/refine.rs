@@ -4,12 +4,12 @@ use glam::IVec3;
 use rayon::prelude::*;
 
 use super::prepare::Soup;
-use super::{Options, TriangleSource};
+use super::{Options, Precision, TriangleSource};
 use crate::contour::{Collapsed, Contour, ContourVertex, Merge, NO_TRIANGLE, collapse_same_voxel};
-use crate::fit::{Facets, Side, Sides, Surface};
+use crate::fit::{Facets, NOT_KEPT, Side, Sides, Surface};
 use crate::lattice::Lattice;
 use crate::ldi::Expression;
-use crate::mesh::Plane;
+use crate::mesh::{Plane, TriMesh, ValidateOptions, validate};
 use crate::progress::{Progress, Stopped};
 use crate::vote::{Lid, Winding};
 
@@ -103,4 +103,24 @@ pub(super) fn sources(surface: &Surface, facets: &Facets<'_>, soup: &Soup) -> Ve
         _ => TriangleSource::Closed,
     };
     (0..surface.mesh.triangles.len() as u32).into_par_iter().map(source).collect()
+}
+
+/// The mesh of a surface, with the `f64` coordinates of `source` at the vertices that are its own, where they may be had and where
+/// nothing touches for it.
+pub(super) fn with_own_numbers(
+    surface: Surface,
+    source: &TriMesh,
+    precision: Precision,
+    progress: &Progress,
+) -> Result<TriMesh, Stopped> {
+    let mut positions = surface.mesh.positions.clone();
+    for (p, &kept) in positions.iter_mut().zip(&surface.kept).filter(|(_, kept)| **kept != NOT_KEPT) {
+        *p = source.positions[kept as usize];
+    }
+    if precision == Precision::Single || positions == surface.mesh.positions {
+        return Ok(surface.mesh);
+    }
+    let own = TriMesh { positions, triangles: surface.mesh.triangles.clone() };
+    let options = ValidateOptions { self_intersections: true, weld: true };
+    Ok(if validate(&own, &options, progress)?.is_valid() { own } else { surface.mesh })
 }

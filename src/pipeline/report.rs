@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
-use super::{BackendReport, CanalReport, MorphologyReport, ThickenReport};
+use super::apart::Apart;
+use super::stages::Stages;
+use super::{BackendReport, CanalReport, MorphologyReport, Outcome, StandingReport, ThickenReport, TopologyReport, solid, topology};
 
 use crate::fit::FitReport;
 use crate::orient::OrientReport;
@@ -13,8 +15,14 @@ use crate::vote::VoteReport;
 pub struct Report {
     /// Voxel spacing, model units.
     pub voxel: f64,
-    /// Voxels along x, y, z.
+    /// Voxels along x, y, z; zero without a lattice.
     pub dims: [i32; 3],
+    /// Whether there was a lattice: not where all of the result stands as it is.
+    pub lattice: bool,
+    /// What stayed as it is, without rays and voxels.
+    pub standing: StandingReport,
+    /// Bodies, voids and tunnels before and after; `None` where an operation changes them.
+    pub topology: Option<TopologyReport>,
     /// Cleaning and orientation of each operand.
     pub orient: Vec<OrientReport>,
     /// The rays.
@@ -40,9 +48,19 @@ pub struct Report {
 }
 
 impl Report {
+    /// Triangles of the operands that stayed as they are, before simplification.
+    pub fn kept(&self) -> usize {
+        self.standing.triangles + self.fit.as_ref().map_or(0, |fit| fit.kept)
+    }
+
+    /// Triangles of the operands that could have: all but those of shells that were left out as a whole.
+    pub fn of(&self) -> usize {
+        self.standing.triangles + self.fit.as_ref().map_or(0, |fit| fit.of)
+    }
+
     /// Whether the surface is the operands' own, untouched by voxels.
     pub fn kept_all(&self) -> bool {
-        self.fit.as_ref().is_some_and(|fit| fit.of > 0 && fit.kept == fit.of)
+        self.kept() > 0 && self.kept() == self.of()
     }
 }
 
@@ -76,6 +94,23 @@ pub struct ThinReport {
     pub thinnest: Option<f64>,
     /// A voxel size, model units, that would hold 99 % of the spans; `None` when all are held.
     pub voxel_that_keeps: Option<f64>,
+    /// Where walls and gaps are thinner than 2 h, the largest such places first.
+    pub regions: Vec<ThinRegion>,
+}
+
+/// A place where walls or gaps are thinner than the lattice holds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ThinRegion {
+    /// Whether it is a gap; else a wall.
+    pub gap: bool,
+    /// The smallest coordinates of the rays' pieces there, model units.
+    pub min: [f64; 3],
+    /// The largest.
+    pub max: [f64; 3],
+    /// How many pieces of rays there are.
+    pub rays: usize,
+    /// The shortest of them, model units.
+    pub thinnest: f64,
 }
 
 /// Seconds a stage took.
@@ -85,4 +120,14 @@ pub struct StageTime {
     pub stage: &'static str,
     /// Wall-clock seconds.
     pub seconds: f64,
+}
+
+/// Completes the report of a boolean.
+pub(super) fn finished(mut outcome: Outcome, apart: &Apart, stages: Stages<'_>) -> Outcome {
+    let report = &mut outcome.report;
+    report.standing = apart.report();
+    report.topology = Some(topology::compared(&outcome.mesh, &outcome.sources, apart));
+    report.warnings.extend(solid::warnings(report));
+    report.stages = stages.finish();
+    outcome
 }

@@ -2,10 +2,12 @@
 
 use glam::IVec3;
 
-use super::{Error, LdiReport, Report, ThinReport};
+use super::{Error, LdiReport, Report, ThinRegion, ThinReport};
 use crate::contour::{Crossing, Edge, NO_TRIANGLE};
 use crate::lattice::{Grid, Lattice};
-use crate::ldi::{Layers, Lengths, Spans, THIN, edge_crossing, lengths};
+use crate::fit::{NOT_KEPT, Surface};
+use crate::ldi::{Layers, Lengths, Spans, THIN, ThinPlace, edge_crossing, lengths, thin_places};
+use crate::mesh::Plane;
 use crate::vote::{Lid, Votes, doubts};
 
 /// Crossings before and after the spans were made.
@@ -72,7 +74,32 @@ fn thin(lengths: &Lengths, h: f64) -> ThinReport {
         thin_gaps: shorter(&lengths.gaps),
         thinnest: percentile,
         voxel_that_keeps: percentile.filter(|_| thin_spans > 0).map(|length| length / THIN),
+        regions: Vec::new(),
     }
+}
+
+/// At most so many thin places are listed, each of at least so many rays: of 13 directions three or four look along any wall.
+const MOST_REGIONS: usize = 10;
+const LEAST_RAYS: usize = 4;
+
+/// Where walls and gaps are thinner than the lattice holds, of those that were not kept as they are.
+pub(super) fn thin_regions(
+    spans: &[Spans],
+    planes: &[Plane],
+    surface: &Surface,
+    lattice: &Lattice,
+) -> Vec<ThinRegion> {
+    let mut kept = vec![false; planes.len()];
+    surface.facets.iter().filter(|&&t| t != NOT_KEPT).for_each(|&t| kept[t as usize] = true);
+    let region = |place: &ThinPlace| ThinRegion {
+        gap: place.gap,
+        min: lattice.to_model(place.min).to_array(),
+        max: lattice.to_model(place.max).to_array(),
+        rays: place.rays,
+        thinnest: place.least * lattice.h,
+    };
+    let places = thin_places(spans, planes, |t| kept[t as usize]);
+    places.iter().filter(|place| place.rays >= LEAST_RAYS).take(MOST_REGIONS).map(region).collect()
 }
 
 /// Shares of rays and spans above which a user should know.

@@ -4,6 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::frame::Frame;
 use super::morphology::{Run, usable, volume};
 use super::plan::{Offsets, area, check_offsets};
 use super::{Error, MorphologyOptions, Options, Outcome, TriangleSource, VoxelSize, boolean, prepare, stages};
@@ -65,6 +66,8 @@ pub struct ThickenReport {
 /// cannot hold.
 pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -> Result<Outcome, Error> {
     let least = usable(options.least)?;
+    let frame = Frame::of(std::slice::from_ref(input));
+    let input = &frame.local(std::slice::from_ref(input))[0];
     let h = prepare::lattice(&prepare::bounds(std::slice::from_ref(input))?, options.solid.voxel)?.h;
     if least < LEAST_VOXELS * h {
         let fits = least / LEAST_VOXELS;
@@ -108,7 +111,7 @@ pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -
     let after = volume(&outcome.mesh);
     outcome.report.thicken =
         Some(ThickenReport { least, thin_area, sheet_area, volume_before: before, volume_after: after });
-    Ok(outcome)
+    Ok(frame.global(outcome))
 }
 
 /// The union of the solid and what was grown, with triangles of the solid where it stays the surface.

@@ -30,14 +30,13 @@ use stitch::{Joined, Misfit, joined};
 /// Times that triangles are let go. Real meshes take up to 20.
 const MOST_ROUNDS: usize = 48;
 
-/// Rounds after which all of a connected patch is let go when it does not fit.
-const PATIENT_ROUNDS: usize = 40;
-
 /// How far from a place that does not fit triangles are let go, h, at first, and how much more each time that there was
-/// trouble within [`SAME_PLACE`] before. More everywhere would make new borders, and with them new trouble.
+/// trouble within [`SAME_PLACE`] before; after [`PATIENCE`] times, or rounds, it is twice as far each time. More everywhere would make new borders,
+/// and with them new trouble. Never is more of a patch let go than what is near: a few triangles that meet say nothing of the rest.
 const REACH: f64 = 1.0;
 const REACH_GROWS: f64 = 0.5;
 const SAME_PLACE: f64 = 3.0;
+const PATIENCE: (usize, usize) = (6, 36);
 
 /// Triangles nearer than this, h, to a place where others meet are let go at once: the crease there wants room. In the
 /// union of fandisk with itself, turned, 97.5 % of the edges come out without, 99 % with.
@@ -55,7 +54,7 @@ pub(super) fn keep(
     let mut kept = choose::chosen(facets, evidence, h, progress)?;
     near(&kept, &meeting_places(home, &kept), CLEARANCE * h).into_iter().for_each(|t| kept.is[t as usize] = false);
     let mut trouble = Trouble::default();
-    for round in 0..MOST_ROUNDS {
+    for _ in 0..MOST_ROUNDS {
         progress.check()?;
         kept.tidy();
         if !kept.is.contains(&true) {
@@ -71,9 +70,6 @@ pub(super) fn keep(
         };
         let mut gone = misfit.unseen;
         let near = trouble.near(&kept, &misfit.points, h);
-        if round >= PATIENT_ROUNDS {
-            gone.extend(near.iter().map(|&t| border.component[t as usize]));
-        }
         gone.sort_unstable();
         near.iter().for_each(|&t| kept.is[t as usize] = false);
         for t in 0..kept.is.len() {
@@ -154,10 +150,17 @@ impl Trouble {
         let mut all = Vec::new();
         for group in by_count.chunk_by(|a, b| a.0 == b.0) {
             let points: Vec<DVec3> = group.iter().map(|entry| entry.1).collect();
-            all.extend(near(kept, &points, h * (REACH + REACH_GROWS * group[0].0 as f64)));
+            all.extend(near(kept, &points, h * self.reach(group[0].0)));
         }
         self.rounds.push(points.to_vec());
         all
+    }
+
+    /// How far to let go, h, around a place where there was trouble so many times before.
+    fn reach(&self, times: usize) -> f64 {
+        let (slow, fast) = (times.min(PATIENCE.0), times.saturating_sub(PATIENCE.0));
+        let late = self.rounds.len().saturating_sub(PATIENCE.1);
+        (REACH + REACH_GROWS * slow as f64) * 2f64.powi(fast.max(late).min(40) as i32)
     }
 }
 

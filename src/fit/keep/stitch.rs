@@ -119,28 +119,26 @@ fn crossings(
     labels: &[u32],
     h: f64,
 ) -> Result<Vec<([u32; 2], OnBorder)>, Misfit> {
-    let edges = home.edges().filter(|[a, b]| labels[*a as usize] != labels[*b as usize]);
+    // Where the contour goes over from one kept component to another, it has bridged a gap between them that the lattice does not
+    // hold: both ends go, and no cut is needed there.
+    let edges = home.edges().filter(|[a, b]| (labels[*a as usize] == NONE) != (labels[*b as usize] == NONE));
     let found = edges.map(|edge| {
         let [a, b] = edge.map(|v| home.at(v));
         let ends = edge.map(|v| labels[v as usize]);
         let inner = if ends[0] == NONE { b } else { a };
         let known = ends[0].min(ends[1]);
-        let both = ends.iter().all(|&c| c != NONE);
         let fits = |on: &OnBorder| {
             let facet = border.segments[on.segment as usize].facet;
             on.off < FARTHEST * h && border.component[facet as usize] == known && kept.is[facet as usize]
         };
-        match border.crossing(a, b).filter(|on| !both && fits(on)) {
-            Some(on) => Ok((edge, on)),
-            None => Err(if both { vec![a, b] } else { vec![inner] }),
-        }
+        border.crossing(a, b).filter(fits).map(|on| (edge, on)).ok_or(inner)
     });
     let (mut fine, wrong): (Vec<_>, Vec<_>) = found.partition_map(|found| match found {
         Ok(point) => rayon::iter::Either::Left(point),
-        Err(points) => rayon::iter::Either::Right(points),
+        Err(point) => rayon::iter::Either::Right(point),
     });
     if !wrong.is_empty() {
-        return Err(Misfit { points: wrong.concat(), ..Misfit::default() });
+        return Err(Misfit { points: wrong, ..Misfit::default() });
     }
     fine.par_sort_unstable_by_key(|p| p.0);
     Ok(fine)

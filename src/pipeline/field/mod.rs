@@ -10,6 +10,7 @@ use serde::Serialize;
 pub use build::{Built, FieldBuilder, Operand};
 
 use super::distance::DistanceOutcome;
+use super::frame::Frame;
 use super::morphology::volume;
 use super::{DistanceReport, Error, Options, Outcome, Report, TriangleSource, VoxelSize, prepare, refine, stages};
 use crate::field::filter::FilterError;
@@ -57,11 +58,13 @@ pub struct OperandReport {
 /// # Errors
 /// See [`Error`]; [`Error::NothingEnclosed`] also for shapes without an end.
 pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> Result<(Outcome, FieldReport), Error> {
-    let field = &*built.field;
     let mut stages = stages::Stages::new(progress);
     stages.begin("field")?;
-    let mut extent = shape_extent(&built.field)?;
+    let extent = shape_extent(&built.field)?;
     let h = field_spacing(built, options)?;
+    let frame = Frame::around(&extent);
+    let mut extent = frame.local_bounds(&extent);
+    let field = &*frame.local_field(&built.field);
     let mut tries = 0;
     let (level, lattice) = loop {
         let lattice = prepare::lattice(&extent, VoxelSize::Length(h))?;
@@ -87,7 +90,8 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         vertex.triangle = facet.and_then(|facet| sources.number(facet)).unwrap_or(own);
     });
     let wanted = |p: DVec3| off(field, p, lattice.h);
-    let facets = Facets::new(&sources.mesh, level.planes).with_wanted(&wanted);
+    let source = &frame.local(std::slice::from_ref(&sources.mesh))[0];
+    let facets = Facets::new(source, level.planes).with_wanted(&wanted);
     stages.begin("collapse")?;
     let mut surface = refine::merged(contour, &facets, &lattice, options, progress)?;
     let mut fitted = None;
@@ -103,13 +107,14 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
     let report = Report {
         voxel: lattice.h,
         dims: lattice.dims.to_array(),
+        lattice: true,
         fit: fitted.clone(),
         closed_triangles: made,
         stages: stages.finish(),
         ..Report::default()
     };
     let account = FieldReport { operands: built.operands.clone(), made, volume: volume(&surface.mesh), fit: fitted };
-    Ok((Outcome { mesh: surface.mesh, sources: origins, lattice, report }, account))
+    Ok((frame.global(Outcome { mesh: surface.mesh, sources: origins, lattice, report }), account))
 }
 
 /// How far a point is from the level, model units. Gradients cost more than values, and mostly the value tells enough.
@@ -147,7 +152,8 @@ pub fn field_grid(
     let mut stages = stages::Stages::new(progress);
     stages.begin("field")?;
     let extent = built.field.extent().bounds().or(built.parts).ok_or_else(endless)?;
-    let mut lattice = prepare::lattice(&extent, options.voxel)?;
+    let frame = Frame::around(&extent);
+    let mut lattice = prepare::lattice(&frame.local_bounds(&extent), options.voxel)?;
     let h = lattice.h;
     let band = match band {
         FieldBand::Length(length) => Some(length),
@@ -166,7 +172,8 @@ pub fn field_grid(
     lattice.origin -= room * h;
     lattice.dims += 2 * IVec3::splat(room as i32);
     let wanted = FillOptions { band, max_memory: options.max_memory };
-    let mut grid = fill(&*built.field, &lattice, &wanted, progress).map_err(not_filled)?;
+    let mut grid = fill(&*frame.local_field(&built.field), &lattice, &wanted, progress).map_err(not_filled)?;
+    lattice = frame.global_lattice(lattice);
     // The outcome holds distances in h.
     let per_h = (1.0 / h) as f32;
     grid.values.par_iter_mut().flatten().for_each(|value| *value *= per_h);

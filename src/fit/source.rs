@@ -1,0 +1,38 @@
+//! Simplification of a source mesh that is right already.
+
+use super::facets::{Facets, Side, Sides};
+use super::simplify::simplified;
+use super::surface::{NOT_KEPT, Surface};
+use super::FitOptions;
+use crate::mesh::TriMesh;
+use crate::progress::{Progress, Stopped};
+
+/// A valid solid with its flat parts simplified within [`FitOptions::kept_tolerance`], and for each triangle the one of `mesh` that it
+/// lies on. `classes` has a number for each triangle, or nothing: what has different ones is kept apart. `h` is the voxel
+/// spacing that the tolerance refers to, model units. `None` where the mesh is no valid solid, as it is or with coordinates in `f32`.
+///
+/// # Errors
+/// Only a stop.
+pub fn simplified_source(
+    mesh: &TriMesh,
+    classes: Vec<u32>,
+    h: f64,
+    options: &FitOptions,
+    progress: &Progress,
+) -> Result<Option<(TriMesh, Vec<Option<u32>>)>, Stopped> {
+    let facets = Facets::new(mesh, []).with_classes(classes);
+    let mut sides = vec![Sides::default(); mesh.positions.len()];
+    for (t, corners) in (0..).zip(&mesh.triangles) {
+        corners.iter().for_each(|&v| sides[v as usize].add(Side::new(t, false)));
+    }
+    let surface = Surface {
+        mesh: mesh.clone(),
+        sides,
+        kept: (0..mesh.positions.len() as u32).collect(),
+        facets: vec![NOT_KEPT; mesh.triangles.len()],
+    };
+    let options = FitOptions { tolerance: options.kept_tolerance, ..*options };
+    let Some(simple) = simplified(&surface, &facets, h, &options, progress)? else { return Ok(None) };
+    let of = (0..simple.mesh.triangles.len() as u32).map(|t| simple.facet(&facets, t)).collect();
+    Ok(Some((simple.mesh, of)))
+}

@@ -1,0 +1,310 @@
+//! What stands as it is, beside what rays and voxels have to decide.
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+use serde::Serialize;
+
+use super::prepare::Soup;
+use super::{Options, Precision, TriangleSource};
+use crate::fit::simplified_source;
+use crate::ldi::{Expression, Operands};
+use crate::mesh::TriMesh;
+use crate::mesh::edges::Union;
+use crate::progress::{Progress, Stopped};
+use crate::shells::{Contacts, Fate, Shells, StandingOptions, contacts, shells, standing};
+
+/// Shells of the operands that stayed as they are, without any voxel.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct StandingReport {
+    /// Shells that are part of the result as they are.
+    pub shells: usize,
+    /// Their triangles.
+    pub triangles: usize,
+    /// Shells that were left out because both of their sides lie inside the result, or both outside.
+    pub left_out: usize,
+    /// Shells that were inside out and were turned over.
+    pub turned: usize,
+}
+
+/// The shells of a soup, and what becomes of them.
+pub(super) struct Apart {
+    pub shells: Shells,
+    pub contacts: Contacts,
+    /// What becomes of each shell in this run.
+    pub fates: Vec<Fate>,
+    /// What exact arithmetic says of each shell.
+    pub truth: Vec<Fate>,
+    /// For each operand and each of its triangles the shell; nothing for triangles that were dropped.
+    shell_of: Vec<Vec<Option<u32>>>,
+    /// Places, connected through vertices, where triangles touch others.
+    crossings: usize,
+}
+
+impl Precision {
+    /// A coordinate as the result may have it.
+    fn of(self, p: DVec3) -> DVec3 {
+        match self {
+            Self::Single => p.as_vec3().as_dvec3(),
+            Self::Double => p,
+        }
+    }
+
+    fn of_mesh(self, mesh: &TriMesh) -> Cow<'_, TriMesh> {
+        match self {
+            Self::Double => Cow::Borrowed(mesh),
+            Self::Single => {
+                let positions = mesh.positions.iter().map(|&p| self.of(p)).collect();
+                Cow::Owned(TriMesh { positions, triangles: mesh.triangles.clone() })
+            }
+        }
+    }
+}
+
+impl Apart {
+    /// Finds the shells, what they touch, and which of them stand. Where all of the surface is to be built anew, none does.
+    pub(super) fn find(
+        soup: &Soup,
+        expression: &Expression,
+        options: &Options,
+        progress: &Progress,
+    ) -> Result<Self, Stopped> {
+        let shells = shells(&soup.mesh, &soup.operands);
+        let mesh = options.precision.of_mesh(&soup.mesh);
+        let bodies = shells.list.iter().filter(|shell| shell.is_body()).count();
+        let keeps = options.fit.is_some_and(|fit| fit.keep);
+        // A single open shell touches nothing but itself, which the fit looks at.
+        let worth_looking = bodies > 0 && (shells.list.len() > 1 || shells.list[0].rims == 0);
+        let contacts = match worth_looking {
+            true => contacts(&mesh, &shells, progress)?,
+            false => Contacts { touched: vec![false; soup.mesh.triangles.len()], pairs: Vec::new() },
+        };
+        let asked = StandingOptions { expression, operands: soup.operands.count(), orient: options.orient };
+        let truth = match worth_looking {
+            true => standing(&mesh, &shells, &contacts, &asked, progress)?,
+            false => vec![Fate::Open; shells.list.len()],
+        };
+        let fates = if keeps { truth.clone() } else { vec![Fate::Open; shells.list.len()] };
+        let shell_of = shell_of(soup, &shells);
+        let crossings = places(&soup.mesh, &contacts.touched);
+        Ok(Self { shells, contacts, fates, truth, shell_of, crossings })
+    }
+
+    /// The number of operands.
+    pub(super) fn operands(&self) -> usize {
+        self.shell_of.len()
+    }
+
+    /// The shell of a triangle of an operand.
+    pub(super) fn shell_of(&self, operand: u32, triangle: u32) -> Option<u32> {
+        self.shell_of[operand as usize].get(triangle as usize).copied().flatten()
+    }
+
+    /// How many places there are where triangles touch others: each can make a tunnel.
+    pub(super) fn crossings(&self) -> usize {
+        self.crossings
+    }
+
+    /// The same with no shell standing.
+    pub(super) fn none_standing(mut self) -> Self {
+        self.fates.fill(Fate::Open);
+        self
+    }
+
+    pub(super) fn report(&self) -> StandingReport {
+        let mut report = StandingReport::default();
+        for (fate, shell) in self.fates.iter().zip(&self.shells.list) {
+            let (bounds, turned) = match *fate {
+                Fate::Open => continue,
+                Fate::Bounds { turned, .. } => (true, turned),
+                Fate::Inside { turned } => (false, turned),
+            };
+            report.turned += usize::from(turned);
+            report.shells += usize::from(bounds);
+            report.triangles += if bounds { shell.triangles.len() } else { 0 };
+            report.left_out += usize::from(!bounds);
+        }
+        report
+    }
+
+    /// The soup without what stands or is left out, and the whole one, where that is another; what was turned over is counted in the reports of
+    /// the first.
+    pub(super) fn split(&self, soup: Soup) -> (Soup, Option<Soup>) {
+        if self.fates.iter().all(|fate| fate.is_open()) {
+            return (soup, None);
+        }
+        (self.rest(&soup), Some(soup))
+    }
+
+    /// The soup without what stands or is left out.
+    pub(super) fn rest(&self, soup: &Soup) -> Soup {
+        let is_open = |t: usize| self.fates[self.shells.of[t] as usize].is_open();
+        let left: Vec<usize> = (0..soup.mesh.triangles.len()).filter(|&t| is_open(t)).collect();
+        let mut reports = soup.reports.clone();
+        for (fate, shell) in self.fates.iter().zip(&self.shells.list) {
+            if matches!(fate, Fate::Bounds { turned: true, .. } | Fate::Inside { turned: true }) {
+                reports[shell.operand].flipped_patches += 1;
+                reports[shell.operand].flipped_by_rays += shell.triangles.len();
+            }
+        }
+        let mut counts = vec![0; soup.operands.count()];
+        left.iter().for_each(|&t| counts[soup.operands.of(t as u32)] += 1);
+        let triangles = left.iter().map(|&t| soup.mesh.triangles[t]).collect();
+        Soup {
+            mesh: TriMesh { positions: soup.mesh.positions.clone(), triangles },
+            operands: Operands::new(counts),
+            patch_of: left.iter().map(|&t| soup.patch_of[t]).collect(),
+            patch_count: soup.patch_count,
+            reports,
+            source: left.iter().map(|&t| soup.source[t]).collect(),
+        }
+    }
+
+    /// The surface that stands, with where its triangles come from: vertices and triangles as the operands have them, in their order.
+    pub(super) fn surface(
+        &self,
+        soup: &Soup,
+        operands: &[TriMesh],
+        options: &Options,
+        h: f64,
+        progress: &Progress,
+    ) -> Result<Standing, Stopped> {
+        let kept: Vec<(u32, bool)> = (0..soup.mesh.triangles.len() as u32)
+            .filter_map(|t| match self.fates[self.shells.of[t as usize] as usize] {
+                Fate::Bounds { turned, reversed } => Some((t, turned != reversed)),
+                _ => None,
+            })
+            .collect();
+        let mut standing = Standing::default();
+        for (operand, input) in operands.iter().enumerate() {
+            let own: Vec<(u32, bool)> =
+                kept.iter().copied().filter(|&(t, _)| soup.operands.of(t) == operand).collect();
+            standing.add(operand, input, soup, &own, options.precision);
+        }
+        let tolerance = options.fit.map_or(0.0, |fit| fit.kept_tolerance);
+        match tolerance > 0.0 {
+            true => standing.simplified(soup, &kept, options, h, progress),
+            false => Ok(standing),
+        }
+    }
+}
+
+fn shell_of(soup: &Soup, shells: &Shells) -> Vec<Vec<Option<u32>>> {
+    let mut of: Vec<Vec<Option<u32>>> = vec![Vec::new(); soup.operands.count()];
+    for (t, (&source, &shell)) in soup.source.iter().zip(&shells.of).enumerate() {
+        let list = &mut of[soup.operands.of(t as u32)];
+        list.resize(list.len().max(source as usize + 1), None);
+        list[source as usize] = Some(shell);
+    }
+    of
+}
+
+/// The number of parts, connected through vertices, of the triangles that are touched.
+fn places(mesh: &TriMesh, touched: &[bool]) -> usize {
+    let triangles: Vec<[u32; 3]> = mesh.triangles.iter().zip(touched).filter(|t| *t.1).map(|t| *t.0).collect();
+    let mut union = Union::new(if triangles.is_empty() { 0 } else { mesh.positions.len() });
+    triangles.iter().for_each(|&[a, b, c]| {
+        union.join(a, b);
+        union.join(b, c);
+    });
+    let mut roots: Vec<u32> = triangles.iter().map(|t| union.root(t[0])).collect();
+    roots.sort_unstable();
+    roots.dedup();
+    roots.len()
+}
+
+/// A surface made of operands' triangles.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Standing {
+    pub mesh: TriMesh,
+    pub sources: Vec<TriangleSource>,
+}
+
+impl Standing {
+    /// Adds triangles of the soup, turned over or not, with the vertices of `input`.
+    fn add(&mut self, operand: usize, input: &TriMesh, soup: &Soup, own: &[(u32, bool)], precision: Precision) {
+        let corners = |t: u32, over: bool| {
+            let [a, b, c] = soup.mesh.triangles[t as usize];
+            if over { [a, c, b] } else { [a, b, c] }
+        };
+        // Numbers of the input, corner by corner as the soup has them.
+        let at = |v: u32| soup.mesh.positions[v as usize] + 0.0;
+        let numbered = |t: u32| {
+            let given = input.triangles[soup.source[t as usize] as usize];
+            soup.mesh.triangles[t as usize].map(|v| {
+                given.into_iter().find(|&g| input.positions[g as usize] + 0.0 == at(v)).unwrap_or(given[0])
+            })
+        };
+        let mut number: FxHashMap<u32, u32> = FxHashMap::default();
+        let mut one_each = true;
+        for &(t, _) in own {
+            for (v, given) in soup.mesh.triangles[t as usize].into_iter().zip(numbered(t)) {
+                one_each &= *number.entry(v).or_insert(given) == given;
+            }
+        }
+        let place = |v: u32| precision.of(if one_each { input.positions[number[&v] as usize] } else { soup.mesh.positions[v as usize] });
+        let first = self.mesh.positions.len() as u32;
+        if one_each && own.len() == input.triangles.len() {
+            self.mesh.positions.extend(input.positions.iter().map(|&p| precision.of(p)));
+            self.mesh.triangles.extend(own.iter().map(|&(t, over)| corners(t, over).map(|v| first + number[&v])));
+        } else {
+            let mut new: FxHashMap<u32, u32> = FxHashMap::default();
+            for &(t, over) in own {
+                let triangle = corners(t, over).map(|v| {
+                    *new.entry(v).or_insert_with(|| {
+                        self.mesh.positions.push(place(v));
+                        self.mesh.positions.len() as u32 - 1
+                    })
+                });
+                self.mesh.triangles.push(triangle);
+            }
+        }
+        let source = |&(t, _): &(u32, bool)| TriangleSource::Operand {
+            operand: operand as u32,
+            triangle: soup.source[t as usize],
+        };
+        self.sources.extend(own.iter().map(source));
+    }
+
+    /// The same with flat parts simplified, where that leaves a valid solid.
+    fn simplified(
+        self,
+        soup: &Soup,
+        kept: &[(u32, bool)],
+        options: &Options,
+        h: f64,
+        progress: &Progress,
+    ) -> Result<Self, Stopped> {
+        let Some(fit) = &options.fit else { return Ok(self) };
+        let classes = soup.classes(&options.classes);
+        let classes = if classes.is_empty() { classes } else { kept.iter().map(|k| classes[k.0 as usize]).collect() };
+        match simplified_source(&self.mesh, classes, h, fit, progress)? {
+            None => Ok(self),
+            Some((mesh, of)) => {
+                let source = |t: Option<u32>| t.map_or(TriangleSource::Closed, |t| self.sources[t as usize]);
+                Ok(Self { mesh, sources: of.into_iter().map(source).collect() })
+            }
+        }
+    }
+}
+
+/// Whether two surfaces, each free of contacts, touch each other.
+pub(super) fn touch(a: &TriMesh, b: &TriMesh, progress: &Progress) -> Result<bool, Stopped> {
+    let (Some(box_a), Some(box_b)) = (a.bounds(), b.bounds()) else { return Ok(false) };
+    let near = |mesh: &TriMesh, other: &crate::mesh::Bounds| {
+        let is_near = |t: &usize| {
+            let [p, q, r] = mesh.corners(*t);
+            let (low, high) = (p.min(q).min(r), p.max(q).max(r));
+            low.cmple(other.max).all() && high.cmpge(other.min).all()
+        };
+        let triangles = (0..mesh.triangles.len()).filter(is_near).map(|t| mesh.triangles[t]).collect();
+        TriMesh { positions: mesh.positions.clone(), triangles }
+    };
+    let (mut both, b) = (near(a, &box_b), near(b, &box_a));
+    let split = both.triangles.len();
+    both.append(&b);
+    let of = (0..both.triangles.len()).map(|t| u32::from(t >= split)).collect();
+    let met = contacts(&both, &Shells { of, list: Vec::new() }, progress)?;
+    Ok(met.pairs.contains(&[0, 1]))
+}

@@ -1,0 +1,136 @@
+//! Far from the origin: the pipelines work near it, and the results go back.
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+
+use super::{Outcome, Report};
+use crate::field::{Placement, Shared, placed};
+use crate::lattice::Lattice;
+use crate::mesh::{Bounds, TriMesh};
+use crate::vote::VoteReport;
+
+/// Where the pipelines' origin lies, model units. Along an axis on which the operands lie farther away than they are large, it
+/// is moved beside them. There, taking it off a coordinate and adding it again is exact in `f64`: the two are within a
+/// factor of two of each other (Sterbenz). Along the others single precision resolves the operands as they are.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Frame {
+    origin: DVec3,
+}
+
+impl Frame {
+    /// The frame of operands in a box.
+    pub(super) fn around(bounds: &Bounds) -> Self {
+        // A multiple of a power of two, so that most sums with it are exact, too.
+        let unit = 2f64.powi(bounds.size().max_element().max(f64::MIN_POSITIVE).log2().floor() as i32);
+        let origin = |low: f64, high: f64| {
+            let (near, far) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
+            let is_within = |c: f64| near >= c.abs() / 2.0 && far <= 2.0 * c.abs();
+            let middle = low / 2.0 + high / 2.0;
+            let round = (middle / unit).round() * unit;
+            let is_far = low.signum() == high.signum() && far <= 2.0 * near && far < f64::MAX;
+            [round, middle].into_iter().find(|&c| is_far && is_within(c)).unwrap_or(0.0)
+        };
+        let (low, high) = (bounds.min, bounds.max);
+        Self { origin: DVec3::new(origin(low.x, high.x), origin(low.y, high.y), origin(low.z, high.z)) }
+    }
+
+    /// The frame of several operands, whatever is wrong with them.
+    pub(super) fn of(operands: &[TriMesh]) -> Self {
+        let bounds = operands.iter().filter_map(TriMesh::bounds).reduce(|a, b| a.union(&b));
+        bounds.map_or(Self::default(), |bounds| Self::around(&bounds))
+    }
+
+    /// A box as the pipelines see it.
+    pub(super) fn local_bounds(&self, bounds: &Bounds) -> Bounds {
+        Bounds { min: bounds.min - self.origin, max: bounds.max - self.origin }
+    }
+
+    /// The operands as the pipelines see them.
+    pub(super) fn local<'a>(&self, operands: &'a [TriMesh]) -> Cow<'a, [TriMesh]> {
+        if self.origin == DVec3::ZERO {
+            return Cow::Borrowed(operands);
+        }
+        let moved = |mesh: &TriMesh| TriMesh {
+            positions: mesh.positions.iter().map(|&p| p - self.origin).collect(),
+            triangles: mesh.triangles.clone(),
+        };
+        Cow::Owned(operands.iter().map(moved).collect())
+    }
+
+    /// A field as the pipelines see it.
+    pub(super) fn local_field(&self, field: &Shared) -> Shared {
+        if self.origin == DVec3::ZERO { field.clone() } else { placed(field.clone(), Placement::moved(-self.origin)) }
+    }
+
+    /// An outcome where the operands are.
+    pub(super) fn global(&self, mut outcome: Outcome) -> Outcome {
+        if self.origin == DVec3::ZERO {
+            return outcome;
+        }
+        outcome.mesh.positions.iter_mut().for_each(|p| *p += self.origin);
+        outcome.lattice = self.global_lattice(outcome.lattice);
+        self.report(&mut outcome.report);
+        outcome
+    }
+
+    /// A lattice where the operands are.
+    pub(super) fn global_lattice(&self, lattice: Lattice) -> Lattice {
+        Lattice { origin: lattice.origin + self.origin, ..lattice }
+    }
+
+    /// The places of votes where the operands are.
+    pub(super) fn votes(&self, vote: &mut VoteReport) {
+        for region in &mut vote.doubtful_regions {
+            self.place(&mut region.min);
+            self.place(&mut region.max);
+        }
+    }
+
+    fn place(&self, p: &mut [f64; 3]) {
+        *p = (DVec3::from_array(*p) + self.origin).to_array();
+    }
+
+    fn report(&self, report: &mut Report) {
+        self.votes(&mut report.vote);
+        for region in &mut report.thin.regions {
+            self.place(&mut region.min);
+            self.place(&mut region.max);
+        }
+        if let Some(topology) = &mut report.topology {
+            topology.lost.iter_mut().for_each(|lost| self.place(&mut lost.at));
+        }
+        if let Some(canals) = &mut report.canals {
+            canals.canals.iter_mut().for_each(|canal| self.place(&mut canal.position));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn there_and_back_is_exact_and_what_is_far_comes_near(
+            centre in prop::array::uniform3(prop_oneof![-1e7f64..1e7, -10f64..10.0, Just(0.0)]),
+            size in 1e-3f64..1e3, share in prop::collection::vec(prop::array::uniform3(0.0f64..1.0), 2..20)
+        ) {
+            let centre = DVec3::from_array(centre);
+            let at = |s: &[f64; 3]| centre + size * DVec3::from_array(*s);
+            let positions: Vec<DVec3> = share.iter().map(at).collect();
+            let bounds = Bounds::of(positions.iter().copied()).unwrap();
+            let frame = Frame::around(&bounds);
+            for p in &positions {
+                prop_assert_eq!((*p - frame.origin) + frame.origin, *p);
+            }
+            let local = frame.local_bounds(&bounds);
+            // Whatever the axis, what is left is no larger than twice the operands.
+            let longest = bounds.size().max_element();
+            let farthest = local.min.abs().max(local.max.abs()).max_element();
+            prop_assert!(farthest <= 2.0 * longest, "{farthest} of {longest}");
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! Bodies, voids and tunnels, before and after: what a lattice lost, fused or pierced is told.
+
+use serde::Serialize;
+
+use super::TriangleSource;
+use super::apart::Apart;
+use crate::ldi::Operands;
+use crate::mesh::TriMesh;
+use crate::mesh::edges::Union;
+use crate::shells::{Fate, Kind, Shell, shells};
+
+/// What a surface bounds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Topology {
+    /// Closed surfaces that face outwards.
+    pub bodies: usize,
+    /// Closed surfaces that face inwards.
+    pub voids: usize,
+    /// Handles of all of them.
+    pub tunnels: i64,
+}
+
+/// A body or void of the operands that the result should have and has not.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LostBody {
+    /// Whether it was a void.
+    pub void: bool,
+    /// The middle of its box, model units.
+    pub at: [f64; 3],
+    /// The diagonal of its box, model units.
+    pub size: f64,
+    /// Its volume, cubic model units.
+    pub volume: f64,
+}
+
+/// How the bodies of the result compare with those that the operands describe.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct TopologyReport {
+    /// What the operands describe; `None` where they are too torn to tell, or where they cross each other. Bodies that touch count
+    /// as one, and holes as closed.
+    pub before: Option<Topology>,
+    /// What the result has.
+    pub after: Topology,
+    /// Bodies and voids that are gone, the largest first, [`MOST_LISTED`] at most.
+    pub lost: Vec<LostBody>,
+    /// How many are gone.
+    pub lost_count: usize,
+    /// Their part of the volume of all bodies, 0 to 1.
+    pub lost_share: f64,
+    /// Bodies that touched no other and came out joined with one.
+    pub fused: usize,
+    /// Pieces into which single bodies came apart, beyond the first of each.
+    pub parted: usize,
+    /// Of these, pieces smaller than [`CRUMB`] of their body.
+    pub crumbs: usize,
+    /// Tunnels beyond those of the operands, and beyond what crossings can make; `None` where the operands are too torn to tell.
+    pub new_tunnels: Option<i64>,
+}
+
+/// At most this many lost bodies are listed.
+pub const MOST_LISTED: usize = 20;
+
+/// A piece with less than this part of its body's volume is a crumb.
+pub const CRUMB: f64 = 1e-4;
+
+/// More than this part of the bodies lost, fused or come apart, or of the volume lost, or as many tunnels more, is a broken promise.
+const LARGE: f64 = 0.1;
+const LARGE_VOLUME: f64 = 0.01;
+
+impl TopologyReport {
+    /// Whether so much has changed that the result is not what the operands describe.
+    pub fn is_large(&self) -> bool {
+        let bodies = self.before.map_or(self.after.bodies + self.lost_count, |before| before.bodies + before.voids);
+        let handles = self.before.map_or(0, |before| before.tunnels.max(0));
+        let changed = self.lost_count + self.fused + self.parted - self.crumbs;
+        changed as f64 > LARGE * bodies as f64
+            || self.lost_share > LARGE_VOLUME
+            || self.new_tunnels.is_some_and(|new| new as f64 > LARGE * (bodies as f64 + handles as f64))
+    }
+}
+
+/// Shells that belong together: they touch, or are pieces of one surface.
+struct Groups {
+    of: Vec<u32>,
+    /// Whether it is a single shell that encloses something by itself.
+    single: Vec<bool>,
+    /// Whether nobody knows what the group bounds.
+    torn: Vec<bool>,
+    /// Whether shells of several operands touch in it.
+    mixed: Vec<bool>,
+}
+
+impl Groups {
+    fn new(apart: &Apart) -> Self {
+        let list = &apart.shells.list;
+        let mut union = Union::new(list.len());
+        apart.contacts.pairs.iter().for_each(|&[a, b]| {
+            union.join(a, b);
+        });
+        // Pieces of one operand may be parts of one surface, whether or not they touch.
+        let mut pieces: Vec<(usize, u32)> = Vec::new();
+        for (n, shell) in (0..).zip(list) {
+            if !shell.is_body() && shell.kind != Kind::Torn {
+                match pieces.iter().find(|(operand, _)| *operand == shell.operand) {
+                    Some(&(_, first)) => {
+                        union.join(first, n);
+                    }
+                    None => pieces.push((shell.operand, n)),
+                }
+            }
+        }
+        let of: Vec<u32> = (0..list.len() as u32).map(|n| union.root(n)).collect();
+        let mut count = vec![0u32; list.len()];
+        let none = vec![false; list.len()];
+        let mut groups = Self { single: none.clone(), torn: none.clone(), mixed: none, of };
+        let mut operand = vec![usize::MAX; list.len()];
+        for (shell, &group) in list.iter().zip(&groups.of) {
+            let group = group as usize;
+            count[group] += 1;
+            groups.torn[group] |= !shell.is_body();
+            groups.mixed[group] |= operand[group] != usize::MAX && operand[group] != shell.operand;
+            operand[group] = shell.operand;
+        }
+        let touched = apart.contacts.of_shells(list.len());
+        for (n, &group) in groups.of.iter().enumerate() {
+            groups.single[group as usize] = count[group as usize] == 1 && !touched[n] && list[n].is_body();
+        }
+        groups
+    }
+}
+
+/// Whether a group must be in the result, as far as that is known, and as a void.
+fn expected(shell: &Shell, truth: Fate, operands: usize) -> Option<(bool, bool)> {
+    match truth {
+        Fate::Bounds { turned, reversed } => Some((true, (shell.volume < 0.0) != (turned != reversed))),
+        Fate::Inside { .. } => Some((false, false)),
+        Fate::Open if operands == 1 && shell.kind == Kind::Open => Some((true, false)),
+        Fate::Open => None,
+    }
+}
+
+/// Compares a result with what the shells of its operands describe.
+pub(super) fn compared(mesh: &TriMesh, sources: &[TriangleSource], apart: &Apart) -> TopologyReport {
+    let found = shells(mesh, &Operands::new([mesh.triangles.len()]));
+    let groups = Groups::new(apart);
+    let list = &apart.shells.list;
+    // The groups that each surface of the result comes from, and back.
+    let mut pairs: Vec<(u32, u32)> = Vec::new();
+    for (source, &shell) in sources.iter().zip(&found.of) {
+        if let TriangleSource::Operand { operand, triangle } = *source
+            && let Some(of) = apart.shell_of(operand, triangle)
+        {
+            pairs.push((shell, groups.of[of as usize]));
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    let mut report = TopologyReport { after: after(&found.list), ..TopologyReport::default() };
+    let known = |group: u32| !groups.torn[group as usize];
+    let mut joined = Union::new(list.len());
+    for of_shell in pairs.chunk_by(|a, b| a.0 == b.0) {
+        let mut known = of_shell.iter().map(|pair| pair.1).filter(|&group| known(group));
+        if let Some(first) = known.next() {
+            report.fused += known.filter(|&other| joined.join(first, other)).count();
+        }
+    }
+    let mut surfaces: Vec<Vec<u32>> = vec![Vec::new(); list.len()];
+    pairs.iter().for_each(|&(shell, group)| surfaces[group as usize].push(shell));
+    lost_and_parted(&mut report, apart, &groups, &surfaces, &found.list);
+    tunnels(&mut report, apart, &groups, &surfaces);
+    report
+}
+
+fn after(list: &[Shell]) -> Topology {
+    Topology {
+        bodies: list.iter().filter(|shell| shell.volume > 0.0).count(),
+        voids: list.iter().filter(|shell| shell.volume < 0.0).count(),
+        tunnels: list.iter().filter_map(|shell| shell.genus).sum(),
+    }
+}
+
+fn lost_and_parted(
+    report: &mut TopologyReport,
+    apart: &Apart,
+    groups: &Groups,
+    surfaces: &[Vec<u32>],
+    found: &[Shell],
+) {
+    let (mut bodies, mut voids) = (0, 0);
+    let mut all_known = true;
+    let (mut volume, mut lost_volume) = (0.0, 0.0);
+    for (n, shell) in apart.shells.list.iter().enumerate() {
+        let group = groups.of[n] as usize;
+        if !groups.single[group] {
+            // Whatever touches is one body or more, counted by its first shell.
+            all_known &= !groups.torn[group] && !(groups.mixed[group] || apart.operands() > 1);
+            bodies += usize::from(group == n);
+            volume += if group == n { shell.volume.abs() } else { 0.0 };
+            continue;
+        }
+        let Some((present, void)) = expected(shell, apart.truth[n], apart.operands()) else {
+            all_known = false;
+            continue;
+        };
+        if !present {
+            continue;
+        }
+        (bodies, voids) = (bodies + usize::from(!void), voids + usize::from(void));
+        volume += shell.volume.abs();
+        match surfaces[group].as_slice() {
+            [] => {
+                let middle = (shell.bounds.min + shell.bounds.max) / 2.0;
+                let (at, size) = (middle.to_array(), shell.bounds.diagonal());
+                report.lost.push(LostBody { void, at, size, volume: shell.volume.abs() });
+                lost_volume += shell.volume.abs();
+            }
+            parts => {
+                let small = |&&part: &&u32| found[part as usize].volume.abs() < CRUMB * shell.volume.abs();
+                report.parted += parts.len() - 1;
+                report.crumbs += parts.iter().filter(small).count().min(parts.len() - 1);
+            }
+        }
+    }
+    report.lost_count = report.lost.len();
+    report.lost_share = if volume > 0.0 { lost_volume / volume } else { 0.0 };
+    report.lost.sort_by(|a, b| b.volume.total_cmp(&a.volume));
+    report.lost.truncate(MOST_LISTED);
+    report.before = all_known.then_some(Topology { bodies, voids, tunnels: 0 });
+}
+
+fn tunnels(report: &mut TopologyReport, apart: &Apart, groups: &Groups, surfaces: &[Vec<u32>]) {
+    let mut sum = 0;
+    for (n, shell) in apart.shells.list.iter().enumerate() {
+        let group = groups.of[n] as usize;
+        match shell.genus.filter(|_| !groups.torn[group]) {
+            Some(genus) if !surfaces[group].is_empty() => sum += genus,
+            Some(_) => {}
+            None => return report.before = None,
+        }
+    }
+    if let Some(before) = &mut report.before {
+        before.tunnels = sum;
+    }
+    report.new_tunnels = Some((report.after.tunnels - sum - apart.crossings() as i64).max(0));
+}
