@@ -4,7 +4,8 @@
 //! The data's way, stage by stage, in the order of the modules below:
 //!
 //! ```text
-//! files ─► io ─► mesh (soup) ─► orient ─► ldi ─► spans ─► vote ─► sdf ─► contour ─► fit ─► mesh ─► io ─► files
+//! files ─► io ─► mesh (soup) ─► orient ─► shells ─► ldi ─► spans ─► vote ─► sdf ─► contour ─► fit ─► mesh ─► io ─► files
+//!                                             └────────── closed shells that touch nothing ──────────┘
 //! ```
 //!
 //! What is promised: the mesh that a pipeline returns is closed, oriented, 2-manifold and free of

@@ -1,7 +1,7 @@
 //! Limits that a finished run may have passed: the file is usable, but the user must know.
 
 use super::report::RunReport;
-use super::{summary, words};
+use super::{doubts, words};
 
 /// More than this share of the walls passing between voxels: the resolution does not hold the shape.
 /// A few always do, where a ray grazes an edge: of the meshes in `testdata/`, and of scans and parts
@@ -30,7 +30,7 @@ pub fn broken(report: &RunReport, max_memory: Option<u64>) -> Vec<String> {
             ));
         }
         if let Some(topology) = pipeline.topology.as_ref().filter(|topology| topology.is_large()) {
-            sentences.push(format!("the result is not what the input describes: {}", summary::changes(topology).join("; ")));
+            sentences.push(format!("the result is not what the input describes: {}", doubts::changes(topology).join("; ")));
         }
     }
     match (report.peak_memory_bytes.or_else(super::report::peak_memory), max_memory) {

@@ -10,6 +10,7 @@ mod convert;
 mod csg;
 mod csg_parser;
 mod devices;
+mod doubts;
 mod exit;
 mod field;
 mod field_args;

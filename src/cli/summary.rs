@@ -3,11 +3,12 @@
 use super::input::Input;
 use super::report::{InputEntry, RunReport};
 use super::session::Session;
+use super::doubts;
 use super::words::{self, UnitName};
 use crate::io::{Loaded, Unit};
 use crate::mesh::Validity;
 use crate::morphology::Operation;
-use crate::pipeline::{Plan, Report, ThickenReport, ThinRegion, TopologyReport};
+use crate::pipeline::{Plan, Report, ThickenReport};
 
 /// A label and what stands behind it; rows of one block are aligned.
 pub type Row = (&'static str, String);
@@ -43,12 +44,7 @@ fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
         if pipeline.lattice {
             rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
         }
-        rows.extend(thin(pipeline, unit).map(|text| ("thin", text)));
-        rows.extend(thin_places(pipeline, unit).into_iter().map(|text| ("thin", text)));
-        if let Some(topology) = &pipeline.topology {
-            rows.extend(changes(topology).into_iter().map(|text| ("changed", text)));
-            rows.extend(lost_bodies(topology, unit).into_iter().map(|text| ("lost", text)));
-        }
+        rows.extend(doubts::rows(pipeline, unit));
     }
     rows.extend(result_rows(report, unit));
     rows.push(time(report));
@@ -185,64 +181,6 @@ fn kept(pipeline: &Report) -> Vec<String> {
     parts
 }
 
-/// What became of the bodies, where it is not what the operands describe.
-pub fn changes(topology: &TopologyReport) -> Vec<String> {
-    let mut parts = Vec::new();
-    let (before, after) = (topology.before, topology.after);
-    let mut add = |count: usize, one: &str, many: &str| match count {
-        0 => {}
-        1 => parts.push(one.to_string()),
-        n => parts.push(format!("{} {many}", words::count(n))),
-    };
-    add(topology.lost_count, "1 body is gone", "bodies are gone");
-    add(topology.fused, "2 bodies that do not touch came out as one", "bodies came out joined with others that they do not touch");
-    add(topology.parted - topology.crumbs, "1 piece came off a body", "pieces came off bodies");
-    add(topology.crumbs, "1 crumb was made beside a body", "crumbs were made beside bodies");
-    let tunnels = topology.new_tunnels.unwrap_or(0).max(0) as usize;
-    add(tunnels, "1 tunnel is new", "tunnels are new");
-    if let Some(before) = before.filter(|_| !parts.is_empty()) {
-        let count = |t: &crate::pipeline::Topology| {
-            let tunnels = words::plural(t.tunnels.max(0) as usize, "tunnel");
-            format!("{}, {}, {tunnels}", words::plural(t.bodies, "body"), words::plural(t.voids, "void"))
-        };
-        parts.push(format!("before: {}; after: {}", count(&before), count(&after)));
-    }
-    parts
-}
-
-/// As many lost bodies, and thin places, are told; the report has more.
-const TOLD: usize = 3;
-
-fn lost_bodies(topology: &TopologyReport, unit: UnitName<'_>) -> Vec<String> {
-    let told = |lost: &crate::pipeline::LostBody| {
-        let what = if lost.void { "void" } else { "body" };
-        let place = lost.at.map(words::number).join(" ");
-        format!("a {what} of {} at {place}", words::length(lost.size, unit))
-    };
-    topology.lost.iter().take(TOLD).map(told).collect()
-}
-
-/// Where walls and gaps are thinner than the lattice holds.
-fn thin_places(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
-    let told = |region: &ThinRegion| {
-        let what = if region.gap { "gap" } else { "wall" };
-        let middle: [f64; 3] = std::array::from_fn(|axis| (region.min[axis] + region.max[axis]) / 2.0);
-        let size: [f64; 3] = std::array::from_fn(|axis| region.max[axis] - region.min[axis]);
-        format!(
-            "a {what} down to {} around {} ({} across): under 2 voxels, look there",
-            words::length(region.thinnest, unit),
-            middle.map(words::number).join(" "),
-            words::size(size, unit)
-        )
-    };
-    let mut rows: Vec<String> = pipeline.thin.regions.iter().take(TOLD).map(told).collect();
-    match pipeline.thin.regions.len().saturating_sub(TOLD) {
-        0 => {}
-        more => rows.push(format!("and {} more (--report has them)", words::plural(more, "place"))),
-    }
-    rows
-}
-
 fn thickened(thick: &ThickenReport, made: usize, unit: UnitName<'_>) -> String {
     let least = words::length(thick.least, unit);
     if thick.thin_area == 0.0 && thick.sheet_area == 0.0 {
@@ -262,22 +200,6 @@ fn thickened(thick: &ThickenReport, made: usize, unit: UnitName<'_>) -> String {
 pub fn voxel(voxel: f64, dims: [i32; 3], unit: UnitName<'_>) -> String {
     let [x, y, z] = dims;
     format!("{} ({x} x {y} x {z} of them)", words::length(voxel, unit))
-}
-
-/// More than this share of walls under two voxels is worth a row: rays that graze edges and
-/// silhouettes make up to about 0.04 of short spans on any shape.
-const THIN_WALLS_TOLD: f64 = 0.05;
-
-/// Walls that the voxel size may not hold, where the evidence is more than grazing rays.
-fn thin(pipeline: &Report, unit: UnitName<'_>) -> Option<String> {
-    let thin = &pipeline.thin;
-    let keeps = thin.voxel_that_keeps.filter(|keeps| *keeps > 0.0 && *keeps < pipeline.voxel)?;
-    let told = thin.thin_spans as f64 > THIN_WALLS_TOLD * thin.spans as f64;
-    let share = words::percent(thin.thin_spans, thin.spans);
-    let keeps = words::with_unit(&words::rounded_down(keeps), unit).replace(' ', "");
-    (told && !pipeline.kept_all()).then(|| {
-        format!("{share} of the walls are under 2 voxels thick and may have suffered; --voxel {keeps} would keep them")
-    })
 }
 
 fn solid(validity: &Validity, unit: UnitName<'_>) -> String {

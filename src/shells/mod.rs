@@ -46,22 +46,22 @@ pub struct Shell {
     pub area: f64,
     /// Loops of open edges.
     pub rims: usize,
-    /// Length of all open edges, model units.
-    pub rim_length: f64,
+    /// The most area that its rims can enclose, as if each were a circle, square model units.
+    pub rim_area: f64,
     /// Handles, once every rim is closed by a disk; `None` for torn shells.
     pub genus: Option<i64>,
 }
 
-/// A shell whose rims could at most enclose this part of its area is a body with holes, rather than a piece of one. The rims of
-/// a scan (the bunny) enclose 0.01 at most, those of a body with a few triangles missing far less; a side of a cube has 1.3.
-const SMALL_RIMS: f64 = 0.05;
+/// A shell whose rims enclose at most this part of its area is a body with holes, rather than a piece of one. A cube without a side has
+/// 0.25, half a ball 0.5, a flat sheet 1 or more.
+const SMALL_RIMS: f64 = 0.3;
 
 impl Shell {
     /// Whether it encloses something by itself, or would once its holes, small against it, are closed.
     pub fn is_body(&self) -> bool {
         match self.kind {
             Kind::Closed => true,
-            Kind::Open => self.rim_length.powi(2) < SMALL_RIMS * 4.0 * std::f64::consts::PI * self.area,
+            Kind::Open => self.rim_area < SMALL_RIMS * self.area,
             Kind::Torn => false,
         }
     }
@@ -84,7 +84,7 @@ struct Tally {
     torn: bool,
     unbalanced: bool,
     rims: usize,
-    rim_length: f64,
+    rim_area: f64,
 }
 
 /// The shells of operands that lie one after another in `mesh`, whose vertices are merged within each operand.
@@ -133,8 +133,6 @@ fn tallies(mesh: &TriMesh, edges: &Edges<'_>, of: &[u32], count: usize) -> Vec<T
         tally.unbalanced |= 2 * up != edge.count();
         if edge.count() == 1 {
             tally.open += 1;
-            let [a, b] = edge.ends.map(|v| mesh.positions[v as usize]);
-            tally.rim_length += a.distance(b);
             ends.push((edge.ends, shell));
         } else {
             tally.torn |= edge.count() != 2 || up != 1;
@@ -148,10 +146,15 @@ fn tallies(mesh: &TriMesh, edges: &Edges<'_>, of: &[u32], count: usize) -> Vec<T
     ends.iter().for_each(|(ends, _)| {
         union.join(number(ends[0]), number(ends[1]));
     });
-    let mut seen = vec![false; vertices.len()];
+    let mut loops: Vec<(u32, f64)> = vec![(0, 0.0); vertices.len()];
     for (ends, shell) in &ends {
-        let root = union.root(number(ends[0])) as usize;
-        tallies[*shell as usize].rims += usize::from(!std::mem::replace(&mut seen[root], true));
+        let [a, b] = ends.map(|v| mesh.positions[v as usize]);
+        let length = &mut loops[union.root(number(ends[0])) as usize];
+        *length = (*shell, length.1 + a.distance(b));
+    }
+    for (shell, length) in loops.into_iter().filter(|entry| entry.1 > 0.0) {
+        tallies[shell as usize].rims += 1;
+        tallies[shell as usize].rim_area += length * length / (4.0 * std::f64::consts::PI);
     }
     tallies
 }
@@ -190,7 +193,7 @@ fn shell(
         volume,
         area,
         rims: tally.rims,
-        rim_length: tally.rim_length,
+        rim_area: tally.rim_area,
         genus: (!torn).then_some((2 - euler - tally.rims as i64) / 2),
         triangles,
     }
