@@ -28,9 +28,12 @@ const LAST_WORDS: Duration = Duration::from_millis(150);
 #[derive(Clone)]
 pub struct Ending {
     state: Arc<Mutex<State>>,
-    speaker: Arc<Mutex<Sender<(Failure, Sender<()>)>>>,
+    speaker: Arc<Mutex<Sender<Words>>>,
     interrupted: Arc<OnceLock<Instant>>,
 }
+
+/// What is to be said, and whom to tell when it has been.
+type Words = (Failure, Sender<()>);
 
 /// Behind a lock that is held for moments only: never while something is written.
 #[derive(Default)]
@@ -107,7 +110,7 @@ impl Ending {
 }
 
 /// Prints what it is given; a thread of its own, because it may wait for ever.
-fn speak(words: &Receiver<(Failure, Sender<()>)>) {
+fn speak(words: &Receiver<Words>) {
     for (failure, done) in words {
         print_failure(&failure);
         let _ = std::io::stderr().flush();

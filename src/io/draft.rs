@@ -289,13 +289,13 @@ mod tests {
             fs::write(folder.path().join(name), "x").expect("written");
         }
         let elsewhere = File::options().write(true).open(folder.path().join(&kept[0])).expect("there");
-        clear_leftovers(&[path.clone()]);
+        clear_leftovers(std::slice::from_ref(&path));
         let mut expected = kept.to_vec();
         expected.sort();
         assert_eq!(names(folder.path()), expected);
         // After a day nobody comes back for it.
         elsewhere.set_modified(SystemTime::now() - 2 * FORGOTTEN).expect("set");
-        clear_leftovers(&[path.clone()]);
+        clear_leftovers(std::slice::from_ref(&path));
         assert!(!names(folder.path()).contains(&kept[0]));
     }
 

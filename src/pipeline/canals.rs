@@ -61,7 +61,7 @@ pub struct CanalOutcome {
 /// Those of [`boolean`]; [`Error::VoxelSize`] for a diameter that the lattice cannot hold; [`Error::MissingCanal`].
 pub fn canals(input: &TriMesh, options: &CanalOptions, progress: &Progress) -> Result<CanalOutcome, Error> {
     let radius = usable(options.max_diameter / 2.0)?;
-    check_offsets(input, &options.solid, Offsets { count: 2, radius })?;
+    check_offsets(input, &options.solid, Offsets { count: 2, radius, thin: false })?;
     let solid = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let closing = MorphologyOptions { operation: Operation::Close, radius, mitre: None, solid: options.solid.clone() };
     let mut stages = stages::Stages::new(progress);

@@ -12,6 +12,7 @@ mod refine;
 mod report;
 mod solid;
 mod stages;
+mod survey;
 mod thicken;
 mod thickness;
 

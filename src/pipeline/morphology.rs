@@ -47,7 +47,7 @@ pub struct MorphologyReport {
 /// the lattice cannot hold.
 pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progress) -> Result<Outcome, Error> {
     let radius = usable(options.radius)?;
-    check_offsets(input, &options.solid, Offsets { count: options.operation.offsets(), radius })?;
+    check_offsets(input, &options.solid, Offsets { count: options.operation.offsets(), radius, thin: false })?;
     let outcome = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let mut stages = stages::Stages::new(progress);
     let run = Run { solid: &outcome.mesh, h: outcome.lattice.h, options, progress };
