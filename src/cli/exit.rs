@@ -127,6 +127,7 @@ impl Failure {
                 Self::input(format!("{label}: no triangle has an area"))
             }
             Error::NothingEnclosed { reason } | Error::TooLarge { reason } => Self::input(reason.clone()),
+            Error::NoRoom { reason } => Self::new(Exit::Memory, reason.clone()),
             Error::VoxelSize { reason } => {
                 Self::new(if asked.voxel { Exit::Usage } else { Exit::Input }, reason.clone())
             }

@@ -223,6 +223,7 @@ fn run(mut job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<E
     let outcome = work(&session, &mut report);
     session.clear_bar();
     let outcome = outcome.and_then(|exit| {
+        session.check_files()?;
         report.close(&Ok(exit), session.start);
         report.emit(job.common, &session)?;
         session.publish(exit)?;

@@ -83,6 +83,12 @@ impl Session {
         Ok(Drafted { file, path })
     }
 
+    /// An error when the run was to stop before its files get their names; without files nothing is undone any more.
+    pub fn check_files(&self) -> Result<(), Failure> {
+        let files = !self.ending.lock().drafts.is_empty();
+        if files { Ok(self.progress.check()?) } else { Ok(()) }
+    }
+
     /// Removes all files that have not got their names.
     pub fn discard(&self) {
         self.ending.lock().drafts.clear();

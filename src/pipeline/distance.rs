@@ -255,7 +255,7 @@ fn refusal(error: ExactError) -> Error {
 fn no_levels(error: LevelsError) -> Error {
     match error {
         LevelsError::Stopped(stopped) => stopped.into(),
-        LevelsError::Memory { .. } => Error::VoxelSize { reason: error.to_string() },
+        LevelsError::Memory { .. } => Error::NoRoom { reason: error.to_string() },
     }
 }
 

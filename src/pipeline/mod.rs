@@ -190,6 +190,12 @@ pub enum Error {
         /// A voxel size that fits, model units; `None` when no size does.
         voxel_that_fits: Option<f64>,
     },
+    /// A piece of memory could not be had.
+    #[error("{reason}")]
+    NoRoom {
+        /// One sentence: for what, and what to try.
+        reason: String,
+    },
     /// A filter cannot be.
     #[error(transparent)]
     Filter(FilterError),
