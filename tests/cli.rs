@@ -2,6 +2,8 @@
 
 #[path = "cli/compare.rs"]
 mod compare;
+#[path = "cli/faults.rs"]
+mod faults;
 #[path = "cli/fields.rs"]
 mod fields;
 #[path = "cli/files.rs"]

@@ -22,8 +22,9 @@ Exit status:
   2    wrong usage
   3    done, but a promise or a stated limit does not hold
   4    unreadable or empty input, or nothing is enclosed
-  5    more memory needed than --max-memory allows
+  5    more memory or threads needed than can be had, or than --max-memory allows
   6    --timeout has passed
+  7    a file or stream cannot be written
   130  interrupted
 
 IN and OUT may be `-` for standard input and output.
@@ -244,7 +245,7 @@ pub struct SdfArgs {
     /// Format of the output, when its name should not decide
     #[arg(long, value_name = "FORMAT")]
     pub out_format: Option<GridFormat>,
-    /// Refuse to start when more memory would be needed (500M, 2G)
+    /// Refuse to start when more memory would be needed (500M, 2G) [default: what is free]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<u64>,
     /// Say what the run would cost, and do nothing
@@ -417,7 +418,7 @@ pub struct SolidArgs {
     /// Write the result, coloured by what is original (grey) and what was made up (red), to this file
     #[arg(long, value_name = "FILE.ply")]
     pub map: Option<PathBuf>,
-    /// Refuse to start when more memory would be needed (500M, 2G)
+    /// Refuse to start when more memory would be needed (500M, 2G) [default: what is free]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<u64>,
     /// Say what the run would cost, and do nothing

@@ -20,7 +20,7 @@ use crate::io::{self, Format, Unit, VertexMap};
 pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let paths: [&Path; 2] = [&args.a, &args.b];
     if let Some(map) = &args.map {
-        check_map(map, &paths)?;
+        check_map(map)?;
     }
     let mut inputs = report.timed("read", |_| input::read_all(&paths, &args.reading, session))?;
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
@@ -87,18 +87,15 @@ impl Limits {
     }
 }
 
-/// Refuses maps that could not be written or would not be found.
-pub(super) fn check_map(map: &Path, inputs: &[&Path]) -> Result<(), Failure> {
+/// Refuses maps that would not be found, or not be what they are named.
+pub(super) fn check_map(map: &Path) -> Result<(), Failure> {
     if is_stream(map) {
         return Err(Failure::usage("--map wants a file"));
     }
     if let Some(other) = Format::from_path(map).filter(|format| *format != Format::Ply) {
         return Err(Failure::usage(format!("--map writes PLY, and {} is named as {other}", map.display())));
     }
-    if inputs.iter().any(|input| output::same_file(input, map)) {
-        return Err(Failure::usage(format!("--map {} is an input and would be overwritten", map.display())));
-    }
-    output::check_folder(map)
+    Ok(())
 }
 
 /// Writes B with its signed distances from A.
@@ -114,10 +111,9 @@ fn write_map(path: &Path, a: &Input, b: &Input, unit: Option<Unit>, session: &Se
     ];
     let quality: Vec<f32> = map.distances.iter().map(|&distance| distance as f32).collect();
     let attributes = VertexMap { quality: &quality, colours: &map.colours(), comments: &comments };
-    let unwritable = |e: io::WriteError| Failure::internal(e.to_string());
     let mut bytes = Vec::new();
-    io::encode_vertex_map(mesh, &attributes, &mut bytes).map_err(unwritable)?;
-    session.finish(|| io::save_bytes(path, |out| out.write_all(&bytes)).map_err(unwritable))?;
+    io::encode_vertex_map(mesh, &attributes, &mut bytes).map_err(|error| output::unencoded(path, &error))?;
+    output::write_side(path, &bytes, session)?;
     Ok(OutputEntry {
         path: path.display().to_string(),
         format: Format::Ply.to_string(),

@@ -14,7 +14,7 @@ use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
 
 /// Reads one file and writes it again.
 pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
-    let mut target = Target::new(&args.output, &args.writing, &[&args.input])?;
+    let mut target = Target::new(&args.output, &args.writing)?;
     let mut inputs = report.timed("read", |_| input::read_all(&[&args.input], &args.reading, session))?;
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     target.set_unit(unit);

@@ -23,10 +23,12 @@ pub enum Exit {
     Limit,
     /// Unreadable or empty input, or nothing enclosed.
     Input,
-    /// Memory cap.
+    /// More memory, or more threads, than can be had.
     Memory,
     /// Deadline.
     Deadline,
+    /// A file or stream cannot be written.
+    Write,
     /// Interrupted.
     Interrupted,
 }
@@ -42,9 +44,19 @@ impl Exit {
             Self::Input => 4,
             Self::Memory => 5,
             Self::Deadline => 6,
+            Self::Write => 7,
             Self::Interrupted => 130,
         }
     }
+}
+
+/// What the user has asked for.
+#[derive(Debug, Clone, Copy)]
+pub struct Asked {
+    /// Whether the voxel size was given, as a length.
+    pub voxel: bool,
+    /// `--max-memory`.
+    pub memory: Option<u64>,
 }
 
 /// Why a run ended without its result: a sentence, perhaps something to try, and the exit status.
@@ -84,10 +96,13 @@ impl Failure {
         Self::new(Exit::Internal, message)
     }
 
-    /// More memory needed than allowed, bytes.
-    pub fn memory(needed: u64, allowed: u64) -> Self {
-        let (needed, allowed) = (words::bytes(needed), words::bytes(allowed));
-        Self::new(Exit::Memory, format!("about {needed} of memory would be needed, and --max-memory allows {allowed}"))
+    /// More memory needed than allowed, bytes; by `asked` or, without it, by what is free.
+    pub fn memory(needed: u64, allowed: u64, asked: Option<u64>) -> Self {
+        let allowed = match asked {
+            Some(cap) => format!("--max-memory allows {}", words::bytes(cap)),
+            None => format!("{} can be had (--max-memory SIZE says another limit)", words::bytes(allowed)),
+        };
+        Self::new(Exit::Memory, format!("about {} of memory would be needed, and {allowed}", words::bytes(needed)))
     }
 
     /// The same with something to try.
@@ -102,9 +117,8 @@ impl Failure {
         self
     }
 
-    /// What a pipeline's error means, for operands that go by `labels`. `voxel_asked`: whether
-    /// the user chose the voxel size as a length.
-    pub fn pipeline(error: &pipeline::Error, labels: &[String], unit: words::UnitName<'_>, voxel_asked: bool) -> Self {
+    /// What a pipeline's error means, for operands that go by `labels`.
+    pub fn pipeline(error: &pipeline::Error, labels: &[String], unit: words::UnitName<'_>, asked: Asked) -> Self {
         use pipeline::Error;
         match error {
             Error::Stopped(stopped) => Self::from(*stopped),
@@ -113,11 +127,12 @@ impl Failure {
                 Self::input(format!("{label}: no triangle has an area"))
             }
             Error::NothingEnclosed { reason } | Error::TooLarge { reason } => Self::input(reason.clone()),
+            Error::NoRoom { reason } => Self::new(Exit::Memory, reason.clone()),
             Error::VoxelSize { reason } => {
-                Self::new(if voxel_asked { Exit::Usage } else { Exit::Input }, reason.clone())
+                Self::new(if asked.voxel { Exit::Usage } else { Exit::Input }, reason.clone())
             }
             Error::Memory { needed, allowed, voxel_that_fits } => {
-                let failure = Self::memory(*needed, *allowed);
+                let failure = Self::memory(*needed, *allowed, asked.memory);
                 match voxel_that_fits {
                     Some(h) => failure.hint(format!(
                         "--voxel {} would fit",

@@ -6,17 +6,18 @@ use std::sync::Arc;
 use serde_json::json;
 
 use super::csg::{explain, named_files};
-use super::exit::{Exit, Failure};
+use super::exit::{Asked, Exit, Failure};
 use super::field_args::FieldArgs;
+use super::files::Made;
 use super::given::{Given, Which};
 use super::input::{self, is_stream};
 use super::length::{BandChoice, Length, Scale, Simplify};
-use super::output::{self, Target};
+use super::output::Target;
 use super::report::RunReport;
 use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
-use super::{limits, sdf, solid};
+use super::{limits, machine, sdf, solid};
 use crate::field::Sampled;
 use crate::field::language::{self, LanguageError, Node, Value};
 use crate::fit::FitOptions;
@@ -33,7 +34,7 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     let files = named_files(&args.operands)?;
     let texts = Texts::parse(args, &files)?;
     let paths: Vec<&Path> = files.iter().map(|(_, path)| *path).collect();
-    let targets = targets(args, &paths)?;
+    let targets = targets(args)?;
     let mut given = report.timed("read", |_| Given::read(&paths, &args.reading, session))?;
     let of_grids = given.grids.iter().find_map(|grid| grid.file.unit);
     let unit = input::common_unit(&mut given.meshes, &args.reading, &mut report.warnings).or(of_grids);
@@ -67,10 +68,10 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     for (number, target) in targets.iter().enumerate() {
         run.frame(number, targets.len(), target, report)?;
     }
-    let broken = limits::broken(report, options.max_memory);
+    let broken = limits::broken(report, args.max_memory);
     report.warnings.extend(broken.iter().cloned());
     report.seconds = session.start.elapsed().as_secs_f64();
-    report.peak_memory_bytes = super::report::peak_memory();
+    report.peak_memory_bytes = super::machine::peak_memory();
     session.clear_bar();
     say(session, report, targets.len(), unit);
     Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
@@ -151,8 +152,22 @@ impl Place {
     }
 }
 
-/// A place for each frame; everything about them that can be known before the work begins is checked.
-fn targets(args: &FieldArgs, paths: &[&Path]) -> Result<Vec<Place>, Failure> {
+/// The files that will be made.
+pub(super) fn made(args: &FieldArgs) -> Vec<Made> {
+    let frames = args.frames.unwrap_or(1);
+    let made = |number| Made { flag: "-o", path: frame_path(args, number, frames), force: args.writing.force };
+    (0..frames).map(made).collect()
+}
+
+fn frame_path(args: &FieldArgs, number: u32, frames: u32) -> PathBuf {
+    match frames > 1 && !is_stream(&args.output) {
+        true => numbered(&args.output, number, frames),
+        false => args.output.clone(),
+    }
+}
+
+/// A place for each frame; what can be known of their formats before the work begins is checked.
+fn targets(args: &FieldArgs) -> Result<Vec<Place>, Failure> {
     let frames = args.frames.unwrap_or(1);
     if frames > 1 && is_stream(&args.output) {
         return Err(
@@ -160,7 +175,7 @@ fn targets(args: &FieldArgs, paths: &[&Path]) -> Result<Vec<Place>, Failure> {
         );
     }
     let place = |number: u32| {
-        let path = if frames > 1 { numbered(&args.output, number, frames) } else { args.output.clone() };
+        let path = frame_path(args, number, frames);
         match GridFormat::from_path(&path).filter(|_| args.writing.out_format.is_none()) {
             Some(_) if args.paint.is_some() => {
                 Err(Failure::usage("--paint colours the vertices of a mesh, and a lattice has none")
@@ -173,16 +188,13 @@ fn targets(args: &FieldArgs, paths: &[&Path]) -> Result<Vec<Place>, Failure> {
                 Err(Failure::usage("--band is about the values over a lattice, and a mesh has none")
                     .hint("a name after -o that ends in .vti, .nrrd, .npy or .vdb"))
             }
-            Some(format) => {
-                output::check_overwrite(&path, args.writing.force, paths)?;
-                Ok(Place::Grid(path, format))
-            }
+            Some(format) => Ok(Place::Grid(path, format)),
             None if args.writing.out_format.is_none() && Format::from_path(&path).is_none() && !is_stream(&path) => {
                 Err(Failure::usage(format!("the name {} does not tell its format", path.display())).hint(
                     "end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or for a lattice in .vti, .nrrd, .npy or .vdb",
                 ))
             }
-            None => Target::new(&path, &args.writing, paths).map(Place::Mesh),
+            None => Target::new(&path, &args.writing).map(Place::Mesh),
         }
     };
     (0..frames).map(place).collect()
@@ -222,7 +234,7 @@ fn options(args: &FieldArgs, scale: &Scale, given: &Given) -> Result<Options, Fa
         classes: given.painted().map(|(_, colours)| pipeline::classes(colours)).collect(),
         orient: args.orient.into(),
         collapse: !args.no_collapse,
-        max_memory: args.max_memory,
+        max_memory: machine::memory_cap(args.max_memory),
         ..Options::new(voxel)
     })
 }
@@ -242,7 +254,7 @@ fn resolved(args: &FieldArgs, unit: Option<Unit>, options: &Options, scale: &Sca
         "fit": options.fit.is_some(),
         "simplify_as_given": args.simplify.map(|simplify| simplify.to_string()),
         "threads": rayon::current_num_threads(),
-        "max_memory_bytes": options.max_memory,
+        "max_memory_bytes": args.max_memory,
         "timeout_seconds": args.common.timeout.map(|timeout| timeout.as_secs_f64()),
     })
 }
@@ -266,7 +278,7 @@ impl Run<'_> {
             Place::Grid(path, format) => self.grid(&built, path, *format, report)?,
         }
         if frames > 1 {
-            self.session.say(&format!("frame {} of {frames}: {}", number + 1, place.path().display()));
+            self.session.tell(&format!("frame {} of {frames}: {}", number + 1, place.path().display()));
         }
         Ok(())
     }
@@ -283,7 +295,8 @@ impl Run<'_> {
     fn failure(&self, error: &pipeline::Error) -> Failure {
         let labels = self.given.labels();
         let unit = self.scale.unit.map(|unit| unit.to_string());
-        Failure::pipeline(error, &labels, unit.as_deref(), self.args.voxel.is_some())
+        let asked = Asked { voxel: self.args.voxel.is_some(), memory: self.args.max_memory };
+        Failure::pipeline(error, &labels, unit.as_deref(), asked)
     }
 
     fn mesh(&mut self, built: &Built, share: f64, target: &Target, report: &mut RunReport) -> Result<(), Failure> {

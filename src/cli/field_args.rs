@@ -51,7 +51,7 @@ pub struct FieldArgs {
     /// Which side of the triangles of broken meshes is outside: find out, or trust the file
     #[arg(long, value_enum, default_value_t = OrientChoice::Auto)]
     pub orient: OrientChoice,
-    /// Refuse when more memory would be needed (500M, 2G)
+    /// Refuse when more memory would be needed (500M, 2G) [default: what is free]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<u64>,
     /// How the inputs are read.

@@ -6,7 +6,7 @@ use std::path::Path;
 use sha2::{Digest, Sha256};
 
 use super::args::InputArgs;
-use super::exit::Failure;
+use super::exit::{Exit, Failure};
 use super::report::{InputEntry, PartEntry};
 use super::session::Session;
 use crate::io::{self, Format, Loaded, Unit};
@@ -39,10 +39,10 @@ pub fn read_all(paths: &[&Path], args: &InputArgs, session: &Session) -> Result<
     paths.iter().map(|path| read(path, args, session)).collect()
 }
 
-/// Refuses to read standard input twice.
+/// Refuses to read standard input twice, and what cannot be read.
 pub fn check_streams(paths: &[&Path]) -> Result<(), Failure> {
     match paths.iter().filter(|path| is_stream(path)).count() {
-        0 | 1 => Ok(()),
+        0 | 1 => paths.iter().try_for_each(|path| super::files::check_input(path)),
         _ => Err(Failure::usage("standard input (`-`) can be read only once")),
     }
 }
@@ -57,7 +57,12 @@ pub fn read(path: &Path, args: &InputArgs, session: &Session) -> Result<Input, F
 pub fn bytes_of(path: &Path, session: &Session) -> Result<Vec<u8>, Failure> {
     session.progress.check()?;
     let bytes = if is_stream(path) { read_stream() } else { std::fs::read(path) };
-    let bytes = bytes.map_err(|e| Failure::input(format!("cannot read {}: {}", label(path), plain_reason(&e))))?;
+    let bytes = bytes.map_err(|e| match e.kind() {
+        std::io::ErrorKind::OutOfMemory => {
+            Failure::new(Exit::Memory, format!("{}: there is no room for it in memory", label(path)))
+        }
+        _ => Failure::input(format!("cannot read {}: {}", label(path), plain_reason(&e))),
+    })?;
     session.progress.check()?;
     Ok(bytes)
 }

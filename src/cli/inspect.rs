@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::args::InspectArgs;
 use super::choices::Defect;
-use super::exit::{Exit, Failure};
+use super::exit::{Asked, Exit, Failure};
 use super::input::{self, Input};
 use super::length::Scale;
 use super::report::RunReport;
@@ -60,7 +60,8 @@ fn thickness(
         None => VoxelSize::Along(args.resolution),
     };
     let name = unit.map(|unit| unit.to_string());
-    let failed = |e| Failure::pipeline(&e, std::slice::from_ref(&input.label), name.as_deref(), args.voxel.is_some());
+    let asked = Asked { voxel: args.voxel.is_some(), memory: None };
+    let failed = |e| Failure::pipeline(&e, std::slice::from_ref(&input.label), name.as_deref(), asked);
     pipeline::thickness(mesh, &Options::new(voxel), &session.progress).map_err(failed)
 }
 

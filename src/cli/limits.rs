@@ -33,7 +33,7 @@ pub fn broken(report: &RunReport, max_memory: Option<u64>) -> Vec<String> {
             sentences.push(format!("the result is not what the input describes: {}", doubts::changes(topology).join("; ")));
         }
     }
-    match (report.peak_memory_bytes.or_else(super::report::peak_memory), max_memory) {
+    match (report.peak_memory_bytes.or_else(super::machine::peak_memory), max_memory) {
         (Some(peak), Some(cap)) if peak > cap => sentences.push(format!(
             "the run took {} of memory, more than the {} of --max-memory",
             words::bytes(peak),

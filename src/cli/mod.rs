@@ -11,14 +11,17 @@ mod csg;
 mod csg_parser;
 mod devices;
 mod doubts;
+mod ending;
 mod exit;
 mod field;
 mod field_args;
+mod files;
 mod given;
 mod input;
 mod inspect;
 mod length;
 mod limits;
+mod machine;
 mod morphology;
 mod output;
 mod progress_bar;
@@ -33,8 +36,10 @@ mod summary;
 mod words;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Parser;
 
@@ -42,6 +47,7 @@ use crate::ldi::Expression;
 use crate::morphology::Operation;
 use args::{Cli, CommonArgs, SolidArgs, Verb};
 use exit::{Exit, Failure};
+use files::Made;
 use report::RunReport;
 use session::{Session, print_failure};
 
@@ -55,10 +61,13 @@ pub fn main() -> ExitCode {
             return ExitCode::from(if error.use_stderr() { Exit::Usage } else { Exit::Done }.code());
         }
     };
-    std::panic::set_hook(Box::new(|panic| {
+    let no_bug = Arc::new(AtomicBool::new(true));
+    machine::tame_signals(no_bug.clone());
+    std::panic::set_hook(Box::new(move |panic| {
         if backend::expects_panic() {
             return;
         }
+        no_bug.store(false, Ordering::SeqCst);
         let place = panic.location().map_or(String::new(), |place| format!(" ({}:{})", place.file(), place.line()));
         let failure = Failure::internal(format!("the program has a bug{place}"))
             .hint("please report it with the command and the file");
@@ -89,31 +98,45 @@ fn dispatch(verb: &Verb) -> Exit {
         Verb::Thicken(args) => {
             solid("thicken", &args.solid, &[&args.input], |session, report| morphology::thicken(args, session, report))
         }
-        Verb::Sdf(args) => run("sdf", &args.common, &[&args.input], args.output.as_deref(), |session, report| {
-            sdf::run(args, session, report)
-        }),
+        Verb::Sdf(args) => {
+            let job = Job {
+                inputs: vec![&args.input],
+                made: made(args.output.as_ref(), args.force).into_iter().collect(),
+                max_memory: args.max_memory,
+                plan: args.plan,
+                ..Job::new("sdf", &args.common)
+            };
+            run(job, |session, report| sdf::run(args, session, report))
+        }
         Verb::Field(args) => {
-            run("field", &args.common, &csg::paths(&args.operands), Some(&args.output), |session, report| {
-                field::run(args, session, report)
-            })
+            let job = Job {
+                inputs: csg::paths(&args.operands),
+                made: field::made(args),
+                max_memory: args.max_memory,
+                ..Job::new("field", &args.common)
+            };
+            run(job, |session, report| field::run(args, session, report))
         }
         Verb::Inspect(args) => {
-            run("inspect", &args.common, &[&args.input], None, |session, report| inspect::run(args, session, report))
+            let job = Job { inputs: vec![&args.input], ..Job::new("inspect", &args.common) };
+            run(job, |session, report| inspect::run(args, session, report))
         }
         Verb::Compare(args) => {
-            run("compare", &args.common, &[&args.a, &args.b], args.map.as_deref(), |session, report| {
-                compare::run(args, session, report)
-            })
+            let made = Made::side("--map", args.map.as_ref()).into_iter().collect();
+            let job = Job { inputs: vec![&args.a, &args.b], made, ..Job::new("compare", &args.common) };
+            run(job, |session, report| compare::run(args, session, report))
         }
-        Verb::Convert(args) => run("convert", &args.common, &[&args.input], Some(&args.output), |session, report| {
-            convert::run(args, session, report)
-        }),
-        Verb::Devices(args) => run("devices", &args.common, &[], None, |_, report| devices::run(args, report)),
+        Verb::Convert(args) => {
+            let made = made(Some(&args.output), args.writing.force).into_iter().collect();
+            let job = Job { inputs: vec![&args.input], made, ..Job::new("convert", &args.common) };
+            run(job, |session, report| convert::run(args, session, report))
+        }
+        Verb::Devices(args) => run(Job::new("devices", &args.common), |_, report| devices::run(args, report)),
         Verb::Render(args) => {
-            let inputs: Vec<&Path> = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
-            run("render", &args.common, &inputs, Some(&args.output), |session, report| {
-                render::run(args, session, report)
-            })
+            let inputs = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
+            let made = made(Some(&args.output), args.force).into_iter().collect();
+            let job = Job { inputs, made, ..Job::new("render", &args.common) };
+            run(job, |session, report| render::run(args, session, report))
         }
     }
 }
@@ -139,18 +162,57 @@ fn solid(
     inputs: &[&Path],
     work: impl FnOnce(&Session, &mut RunReport) -> Result<Exit, Failure>,
 ) -> Exit {
-    run(verb, &args.common, inputs, args.output.as_deref(), work)
+    let output = made(args.output.as_ref(), args.writing.force);
+    let job = Job {
+        inputs: inputs.to_vec(),
+        made: output.into_iter().chain(Made::side("--map", args.map.as_ref())).collect(),
+        max_memory: args.max_memory,
+        plan: args.plan,
+        ..Job::new(verb, &args.common)
+    };
+    run(job, work)
 }
 
-/// Runs one verb within a session, writes its report, and prints its error.
-fn run(
+fn made(output: Option<&PathBuf>, force: bool) -> Option<Made> {
+    Made::side("-o", output).map(|made| Made { force, ..made })
+}
+
+/// What is known of a run before it starts.
+struct Job<'a> {
     verb: &'static str,
-    common: &CommonArgs,
-    inputs: &[&Path],
-    output: Option<&Path>,
-    work: impl FnOnce(&Session, &mut RunReport) -> Result<Exit, Failure>,
-) -> Exit {
-    let ready = report::check_report_target(common, inputs, output).and_then(|()| Session::new(common));
+    common: &'a CommonArgs,
+    /// What it reads.
+    inputs: Vec<&'a Path>,
+    /// What it writes, the report left out.
+    made: Vec<Made>,
+    max_memory: Option<u64>,
+    /// Nothing is to be done.
+    plan: bool,
+}
+
+impl<'a> Job<'a> {
+    fn new(verb: &'static str, common: &'a CommonArgs) -> Self {
+        Self { verb, common, inputs: Vec::new(), made: Vec::new(), max_memory: None, plan: false }
+    }
+
+    /// Looks at all files of the run.
+    fn check(&mut self) -> Result<(), Failure> {
+        report::check_streams(self.common, self.made.iter().map(|made| made.path.as_path()))?;
+        let report = Made::side("--report", self.common.report.as_ref());
+        if self.plan {
+            let files: Vec<Made> = std::mem::take(&mut self.made).into_iter().chain(report).collect();
+            files::check(&self.inputs, &files)?;
+            return files::prepare(files.iter().filter(|file| file.flag == "--report"));
+        }
+        self.made.extend(report);
+        files::check(&self.inputs, &self.made)?;
+        files::prepare(&self.made)
+    }
+}
+
+/// Runs one verb within a session, writes its report, gives all files their names, and prints what there is to say.
+fn run(mut job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<Exit, Failure>) -> Exit {
+    let ready = job.check().and_then(|()| Session::new(job.common, job.max_memory));
     let session = match ready {
         Ok(session) => session,
         Err(failure) => {
@@ -158,17 +220,29 @@ fn run(
             return failure.exit;
         }
     };
-    let mut report = RunReport::new(verb);
+    let mut report = RunReport::new(job.verb);
     let outcome = work(&session, &mut report);
     session.clear_bar();
-    report.close(&outcome, session.start);
-    let emitted = report.emit(common);
-    let exit = match (&outcome, &emitted) {
-        (Err(failure), _) | (Ok(Exit::Done), Err(failure)) => failure.exit,
-        (Ok(exit), _) => *exit,
+    let outcome = outcome.and_then(|exit| {
+        session.check_files()?;
+        report.close(&Ok(exit), session.start);
+        report.emit(job.common, &session)?;
+        session.publish(exit)?;
+        Ok(exit)
+    });
+    let failure = match outcome {
+        Ok(exit) => {
+            session.speak();
+            return exit;
+        }
+        Err(failure) => failure,
     };
-    for failure in [outcome.err(), emitted.err()].into_iter().flatten() {
-        print_failure(&failure);
+    // Of a run that failed there is nothing but its report.
+    session.discard();
+    report.close(&Err(failure.clone()), session.start);
+    let reported = report.emit(job.common, &session).and_then(|()| session.publish(failure.exit));
+    for failure in std::iter::once(&failure).chain(reported.as_ref().err()) {
+        print_failure(failure);
     }
-    exit
+    failure.exit
 }

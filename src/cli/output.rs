@@ -1,16 +1,18 @@
 //! Writing: to a file or a stream, verified before it appears under its name.
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
 use super::args::OutputArgs;
-use super::exit::Failure;
+use super::exit::{Exit, Failure};
 use super::input::{hex, is_stream, plain_reason, sha256};
 use super::report::OutputEntry;
-use super::session::Session;
-use crate::io::{self, Colours, DistanceSamples, Format, GridFormat, Loaded, Unit, WriteOptions};
+use super::session::{Drafted, Session};
+use crate::io::{
+    self, Colours, DistanceSamples, Format, GridFormat, Loaded, Unit, WriteError, WriteOptions, WriteProblem,
+};
 use crate::mesh::TriMesh;
 
 /// Where a mesh goes, and how it is encoded.
@@ -22,8 +24,8 @@ pub struct Target {
 }
 
 impl Target {
-    /// Checks everything about the output that can be known before the work begins.
-    pub fn new(path: &Path, args: &OutputArgs, inputs: &[&Path]) -> Result<Self, Failure> {
+    /// What can be known of the encoding before the work begins.
+    pub fn new(path: &Path, args: &OutputArgs) -> Result<Self, Failure> {
         let format = match (args.out_format, Format::from_path(path)) {
             (Some(format), _) | (None, Some(format)) => format,
             (None, None) if is_stream(path) => {
@@ -35,7 +37,6 @@ impl Target {
                     .hint("end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or give --out-format"));
             }
         };
-        check_overwrite(path, args.force, inputs)?;
         Ok(Self { path: path.to_path_buf(), options: WriteOptions { format, ascii: args.ascii, unit: None } })
     }
 
@@ -45,51 +46,13 @@ impl Target {
     }
 }
 
-/// Refuses to write over an input without `--force`, into a folder that is not there, or over a folder.
-pub fn check_overwrite(output: &Path, force: bool, inputs: &[&Path]) -> Result<(), Failure> {
-    if is_stream(output) {
-        return Ok(());
-    }
-    if !force && inputs.iter().any(|input| same_file(input, output)) {
-        return Err(Failure::usage(format!("{} is an input and would be overwritten", output.display()))
-            .hint("another name after -o, or --force"));
-    }
-    check_folder(output)
-}
-
-/// Whether two paths lead to the same existing file.
-pub fn same_file(a: &Path, b: &Path) -> bool {
-    if is_stream(a) || is_stream(b) {
-        return false;
-    }
-    match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => a == b,
-    }
-}
-
-/// Whether a file can be made at `path`, as far as can be told beforehand.
-pub fn check_folder(path: &Path) -> Result<(), Failure> {
-    if path.is_dir() {
-        return Err(Failure::usage(format!("{} is a folder", path.display())));
-    }
-    let folder = folder_of(path);
-    match folder.metadata() {
-        Ok(metadata) if metadata.is_dir() => Ok(()),
-        Ok(_) => Err(Failure::usage(format!("{} is not a folder", folder.display()))),
-        Err(e) => Err(Failure::usage(format!("cannot write into {}: {}", folder.display(), plain_reason(&e)))),
-    }
-}
-
-fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    }
+/// Whether what is written to `path` goes there at once: a stream, a pipe, a device.
+pub fn is_direct(path: &Path) -> bool {
+    is_stream(path) || path.metadata().is_ok_and(|metadata| !metadata.is_file())
 }
 
 /// Writes `mesh` with its colours, if it has some, reads it back, and lets `judge` look at what was read. Only when that is content
-/// does the file appear under its name; before, it has a temporary name in the same folder, and if
+/// and the run ends well does the file appear under its name; before, it has a temporary name in the same folder, and if
 /// anything fails nothing is left. Streams and devices get their bytes after the judgement.
 pub fn write_verified<T>(
     target: &Target,
@@ -99,8 +62,7 @@ pub fn write_verified<T>(
     judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
 ) -> Result<(OutputEntry, T), Failure> {
     session.progress.stage("write")?;
-    let direct = is_stream(&target.path) || target.path.metadata().is_ok_and(|metadata| !metadata.is_file());
-    if direct {
+    if is_direct(&target.path) {
         write_direct(target, mesh, colours, session, judge)
     } else {
         write_file(target, mesh, colours, session, judge)
@@ -118,10 +80,8 @@ fn write_direct<T>(
     encode(target, mesh, colours, &mut bytes)?;
     session.progress.stage("verify")?;
     let verdict = judge(&read_back(&bytes, target)?)?;
-    session.finish(|| match is_stream(&target.path) {
-        true => write_stream(&bytes),
-        false => std::fs::write(&target.path, &bytes).map_err(|e| unwritable(&target.path, &e)),
-    })?;
+    session.progress.check()?;
+    write_at_once(&target.path, &bytes)?;
     Ok((entry(target, &bytes), verdict))
 }
 
@@ -132,21 +92,33 @@ fn write_file<T>(
     session: &Session,
     judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
 ) -> Result<(OutputEntry, T), Failure> {
-    // A link stays a link: the file it leads to is replaced.
-    let path = target.path.canonicalize().unwrap_or_else(|_| target.path.clone());
     let failed = |e: &std::io::Error| unwritable(&target.path, e);
-    let file = temporary_file(&path).map_err(|e| cannot_write_into(&path, &e))?;
-    session.temporary(file.path());
-    let mut buffer = std::io::BufWriter::with_capacity(1 << 20, file.as_file());
+    let Drafted { file, path } = session.draft(&target.path)?;
+    let mut buffer = std::io::BufWriter::with_capacity(1 << 20, &file);
     encode(target, mesh, colours, &mut buffer)?;
     buffer.flush().map_err(|e| failed(&e))?;
     drop(buffer);
-    file.as_file().sync_all().map_err(|e| failed(&e))?;
+    file.sync_all().map_err(|e| failed(&e))?;
     session.progress.stage("verify")?;
-    let bytes = std::fs::read(file.path()).map_err(|e| failed(&e))?;
+    let bytes = std::fs::read(path).map_err(|e| failed(&e))?;
     let verdict = judge(&read_back(&bytes, target)?)?;
-    session.finish(|| file.persist(&path).map_err(|e| failed(&e.error)))?;
     Ok((entry(target, &bytes), verdict))
+}
+
+/// Writes a file that is not read back: a map, a report, a picture.
+pub fn write_side(path: &Path, bytes: &[u8], session: &Session) -> Result<(), Failure> {
+    if is_direct(path) {
+        return write_at_once(path, bytes);
+    }
+    let mut file = session.draft(path)?.file;
+    file.write_all(bytes).and_then(|()| file.sync_all()).map_err(|error| unwritable(path, &error))
+}
+
+fn write_at_once(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    match is_stream(path) {
+        true => write_stream(bytes),
+        false => std::fs::write(path, bytes).map_err(|error| unwritable(path, &error)),
+    }
 }
 
 /// Writes what `encode` makes, in `format`. A regular file is read back and compared by its hash before it appears.
@@ -156,7 +128,6 @@ pub fn write_grid(
     format: GridFormat,
     session: &Session,
 ) -> Result<OutputEntry, Failure> {
-    let direct = is_stream(path) || path.metadata().is_ok_and(|metadata| !metadata.is_file());
     let mut bytes = 0;
     let mut hashed = |out: &mut dyn Write| -> Result<String, Failure> {
         let mut hashing = Hashing { out, hash: Sha256::new(), bytes: 0, session };
@@ -169,23 +140,20 @@ pub fn write_grid(
     };
     let sha256 = if is_stream(path) {
         hashed(&mut std::io::stdout().lock())?
-    } else if direct {
+    } else if is_direct(path) {
         let mut file = std::fs::OpenOptions::new().write(true).open(path).map_err(|e| unwritable(path, &e))?;
         hashed(&mut file)?
     } else {
-        let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
         let failed = |e: &std::io::Error| unwritable(path, e);
-        let file = temporary_file(&target).map_err(|e| cannot_write_into(&target, &e))?;
-        session.temporary(file.path());
-        let sha256 = hashed(&mut std::io::BufWriter::with_capacity(1 << 20, file.as_file()))?;
-        file.as_file().sync_all().map_err(|e| failed(&e))?;
+        let draft = session.draft(path)?;
+        let sha256 = hashed(&mut std::io::BufWriter::with_capacity(1 << 20, &draft.file))?;
+        draft.file.sync_all().map_err(|e| failed(&e))?;
         session.progress.stage("verify")?;
-        let found = sha256_of_file(file.path(), session);
+        let found = sha256_of_file(&draft.path, session);
         session.progress.check()?;
         if found.map_err(|e| failed(&e))? != sha256 {
             return Err(Failure::internal("the file does not hold what was written to it; it was removed"));
         }
-        session.finish(|| file.persist(&target).map_err(|e| failed(&e.error)))?;
         sha256
     };
     let path = if is_stream(path) { "standard output".into() } else { path.display().to_string() };
@@ -221,30 +189,32 @@ fn sha256_of_file(path: &Path, session: &Session) -> std::io::Result<String> {
     Ok(hex(&hashing.hash.finalize()))
 }
 
-fn cannot_write_into(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::usage(format!("cannot write into {}: {}", folder_of(path).display(), plain_reason(error)))
-}
-
-fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::internal(format!("cannot write {}: {}", path.display(), plain_reason(error)))
-}
-
-fn temporary_file(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".meshwright-").suffix(".tmp");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // Like any new file: the umask takes its share. An existing file keeps its mode.
-        let mode = path.metadata().map_or(0o666, |metadata| metadata.permissions().mode() & 0o777);
-        builder.permissions(std::fs::Permissions::from_mode(mode));
+/// Why there is no file at `path`.
+pub fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
+    let name = if is_stream(path) { "to standard output".into() } else { path.display().to_string() };
+    let reason = match error.kind() {
+        ErrorKind::BrokenPipe => "whoever read it has stopped reading".into(),
+        _ => plain_reason(error),
+    };
+    let failure = Failure::new(Exit::Write, format!("cannot write {name}: {reason}"));
+    match error.kind() {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
+            failure.hint("room for it, or another folder; what was there before is as it was")
+        }
+        _ => failure,
     }
-    builder.tempfile_in(folder_of(path))
+}
+
+/// What it means that a mesh could not be encoded.
+pub fn unencoded(path: &Path, error: &WriteError) -> Failure {
+    match &error.problem {
+        WriteProblem::Io(error) => unwritable(path, error),
+        problem => Failure::internal(format!("cannot write {}: {problem}", path.display())),
+    }
 }
 
 fn encode(target: &Target, mesh: &TriMesh, colours: Option<&Colours>, out: &mut dyn Write) -> Result<(), Failure> {
-    io::encode_coloured(mesh, colours, &target.options, out)
-        .map_err(|e| Failure::internal(format!("cannot write {}: {e}", target.path.display())))
+    io::encode_coloured(mesh, colours, &target.options, out).map_err(|error| unencoded(&target.path, &error))
 }
 
 fn read_back(bytes: &[u8], target: &Target) -> Result<Loaded, Failure> {
@@ -267,7 +237,5 @@ fn entry(target: &Target, bytes: &[u8]) -> OutputEntry {
 /// Writes `bytes` to standard output.
 pub fn write_stream(bytes: &[u8]) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    out.write_all(bytes)
-        .and_then(|()| out.flush())
-        .map_err(|e| Failure::internal(format!("cannot write to standard output: {}", plain_reason(&e))))
+    out.write_all(bytes).and_then(|()| out.flush()).map_err(|error| unwritable(Path::new("-"), &error))
 }

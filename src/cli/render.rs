@@ -10,17 +10,15 @@ use super::choices::EdgeChoice;
 use super::exit::{Exit, Failure};
 use super::given::{Given, Which};
 use super::input::{self, Input, is_stream};
-use super::output::{check_overwrite, write_stream};
+use super::output::write_side;
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
 use super::slice::{self, Field, SliceChoice, failure};
-use crate::io;
 use crate::picture::{EdgeDrawing, Image, Painted, RenderOptions, View, render, render_pair};
 
 /// Draws one mesh or slice, or two on one sheet.
 pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let paths: Vec<&Path> = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
-    check_overwrite(&args.output, args.force, &paths)?;
     let mut inputs = report.timed("read", |_| Given::read(&paths, &args.reading, session))?;
     // Two meshes share one camera, so they must share one unit.
     input::common_unit(&mut inputs.meshes, &args.reading, &mut report.warnings);
@@ -41,7 +39,8 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
         Err(images) => Image::beside(&images),
     };
     let png = image.to_png().map_err(|e| Failure::internal(format!("the picture cannot be encoded: {e}")))?;
-    session.finish(|| write(&args.output, &png))?;
+    session.progress.check()?;
+    write_side(&args.output, &png, session)?;
     let label = if is_stream(&args.output) { "standard output".into() } else { args.output.display().to_string() };
     session.clear_bar();
     session.say(&format!("{label}: {} x {} pixels", image.width, image.height));
@@ -144,13 +143,6 @@ fn options(args: &RenderArgs) -> RenderOptions {
         defects: !args.no_defects,
         ..RenderOptions::default()
     }
-}
-
-fn write(path: &Path, png: &[u8]) -> Result<(), Failure> {
-    if is_stream(path) {
-        return write_stream(png);
-    }
-    io::save_bytes(path, |out| out.write_all(png)).map_err(|e| Failure::internal(e.to_string()))
 }
 
 /// `--view`: a name, or the direction to the viewer.

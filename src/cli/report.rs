@@ -8,8 +8,9 @@ use serde::Serialize;
 use super::args::CommonArgs;
 use super::exit::{Exit, Failure};
 use super::input::is_stream;
+use super::machine::peak_memory;
+use super::session::Session;
 use crate::compare::Comparison;
-use crate::io;
 use crate::mesh::Validity;
 use crate::pipeline::{DistancePlan, DistanceReport, FieldReport, Plan, Report, StageTime, ThicknessReport};
 
@@ -184,46 +185,34 @@ impl RunReport {
         self.peak_memory_bytes = peak_memory();
     }
 
-    /// Writes the report where `--json` and `--report` want it.
-    pub fn emit(&self, common: &CommonArgs) -> Result<(), Failure> {
+    /// Writes the report where `--json` and `--report` want it: the file first, because a stream cannot be taken back.
+    pub fn emit(&self, common: &CommonArgs, session: &Session) -> Result<(), Failure> {
         if !common.json && common.report.is_none() {
             return Ok(());
         }
         let mut text = serde_json::to_string_pretty(self)
             .map_err(|e| Failure::internal(format!("the report cannot be written as JSON: {e}")))?;
         text.push('\n');
+        if let Some(path) = &common.report {
+            super::output::write_side(path, text.as_bytes(), session)?;
+        }
         if common.json {
             super::output::write_stream(text.as_bytes())?;
-        }
-        if let Some(path) = &common.report {
-            io::save_bytes(path, |out| out.write_all(text.as_bytes()))
-                .map_err(|e| Failure::usage(format!("cannot write the report {}: {e}", path.display())))?;
         }
         Ok(())
     }
 }
 
-/// Refuses reports that would collide with other data.
-pub fn check_report_target(common: &CommonArgs, inputs: &[&Path], output: Option<&Path>) -> Result<(), Failure> {
-    if common.json && output.is_some_and(is_stream) {
+/// Refuses two things on standard output, and a report without a name.
+pub fn check_streams<'a>(common: &CommonArgs, made: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
+    if common.json && made.into_iter().any(is_stream) {
         return Err(Failure::usage("--json and `-o -` both want standard output")
             .hint("--report FILE.json writes the report to a file"));
     }
-    let Some(report) = &common.report else { return Ok(()) };
-    if is_stream(report) {
-        return Err(Failure::usage("--report wants a file").hint("--json writes the report to standard output"));
+    match &common.report {
+        Some(report) if is_stream(report) => {
+            Err(Failure::usage("--report wants a file").hint("--json writes the report to standard output"))
+        }
+        _ => Ok(()),
     }
-    let taken = inputs.iter().copied().chain(output).any(|path| super::output::same_file(path, report));
-    if taken {
-        return Err(Failure::usage(format!("--report {} is also an input or the output", report.display())));
-    }
-    super::output::check_folder(report)
-}
-
-/// Peak resident memory of this process, bytes; Linux only.
-pub fn peak_memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kibibytes * 1024)
 }

@@ -8,14 +8,14 @@ use serde_json::json;
 use super::args::SdfArgs;
 use super::backend;
 use super::choices::SignChoice;
-use super::exit::{Exit, Failure};
+use super::exit::{Asked, Exit, Failure};
 use super::input::{self, Input, is_stream};
 use super::length::{BandChoice, Scale};
 use super::report::{OutputEntry, PlanEntry, RunReport};
 use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
-use super::{limits, output};
+use super::{limits, machine, output};
 use crate::io::{DistanceSamples, GridFormat, SampleBlocks, Unit};
 use crate::lattice::Slot;
 use crate::mesh::Validity;
@@ -49,10 +49,10 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
     let fallback = outcome.report.made_by.as_ref().and_then(|made_by| made_by.fallback.as_ref());
     report.warnings.extend(fallback.map(|reason| format!("the main processor drew the slices: {reason}")));
     report.distance = Some(outcome.report.clone());
-    let broken = limits::broken(report, options.max_memory);
+    let broken = limits::broken(report, args.max_memory);
     report.warnings.extend(broken.iter().cloned());
     report.seconds = session.start.elapsed().as_secs_f64();
-    report.peak_memory_bytes = super::report::peak_memory();
+    report.peak_memory_bytes = super::machine::peak_memory();
     session.clear_bar();
     say(session, report, &outcome.report, &options, unit);
     Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
@@ -72,7 +72,6 @@ fn format(args: &SdfArgs) -> Result<Option<GridFormat>, Failure> {
                 .hint("end it in .vti, .nrrd, .npy or .vdb, or give --out-format"));
         }
     };
-    output::check_overwrite(path, args.force, &[&args.input])?;
     Ok(Some(format))
 }
 
@@ -108,7 +107,7 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
         None if validity.is_valid() && method == DistanceMethod::Exact => DistanceSign::Pseudonormal,
         None => DistanceSign::Votes,
     };
-    let (orient, max_memory) = (args.orient.into(), args.max_memory);
+    let (orient, max_memory) = (args.orient.into(), machine::memory_cap(args.max_memory));
     Ok(DistanceOptions { voxel, band, method, sign, orient, max_memory, backend: args.backend.into() })
 }
 
@@ -151,7 +150,7 @@ fn resolved(
         "out_format": format.map(|format| format.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
         "threads": rayon::current_num_threads(),
-        "max_memory_bytes": options.max_memory,
+        "max_memory_bytes": args.max_memory,
         "timeout_seconds": args.common.timeout.map(|timeout| timeout.as_secs_f64()),
     })
 }
@@ -175,9 +174,12 @@ fn failure(error: &pipeline::Error, input: &Input, unit: Option<Unit>, args: &Sd
     let unit = unit.map(|unit| unit.to_string());
     match error {
         pipeline::Error::Memory { needed, allowed, .. } => {
-            Failure::memory(*needed, *allowed).hint("a narrower --band, or a lower --resolution")
+            Failure::memory(*needed, *allowed, args.max_memory).hint("a narrower --band, or a lower --resolution")
         }
-        _ => Failure::pipeline(error, std::slice::from_ref(&input.label), unit.as_deref(), args.voxel.is_some()),
+        _ => {
+            let asked = Asked { voxel: args.voxel.is_some(), memory: args.max_memory };
+            Failure::pipeline(error, std::slice::from_ref(&input.label), unit.as_deref(), asked)
+        }
     }
 }
 
@@ -200,7 +202,7 @@ fn plan(
     }
     match options.max_memory {
         Some(cap) if plan.memory > cap => {
-            Err(Failure::memory(plan.memory, cap).hint("a narrower --band, or a lower --resolution"))
+            Err(Failure::memory(plan.memory, cap, args.max_memory).hint("a narrower --band, or a lower --resolution"))
         }
         _ => Ok(Exit::Done),
     }

@@ -1,19 +1,20 @@
-//! One run of the program: what it says, when it must stop, and what it must not leave behind.
+//! One run of the program: what it says, when it must stop, and the files that it makes.
 
+use std::cell::RefCell;
+use std::fs::File;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
 
 use super::args::CommonArgs;
+use super::ending::Ending;
 use super::exit::{Exit, Failure};
 use super::progress_bar::Meter;
-use crate::progress::{Progress, Stopped};
-
-/// How long stages have to stop by themselves before the process is ended for them (reading one
-/// large file, for instance, cannot be stopped half-way).
-const PATIENCE: Duration = Duration::from_millis(700);
+use super::{machine, output};
+use crate::io::draft::{Draft, flush_folders, publish};
+use crate::progress::Progress;
 
 /// One run.
 pub struct Session {
@@ -25,34 +26,44 @@ pub struct Session {
     pub verbose: bool,
     quiet: bool,
     meter: Arc<Meter>,
-    unfinished: Unfinished,
+    ending: Ending,
+    /// What is said when the files are in their places.
+    lines: RefCell<Vec<String>>,
+}
+
+/// A file that will get its name at the end of the run.
+pub struct Drafted {
+    /// To be written.
+    pub file: File,
+    /// Where it is for now.
+    pub path: PathBuf,
 }
 
 impl Session {
-    /// Sets up threads, signals, the deadline and the progress bar.
-    pub fn new(common: &CommonArgs) -> Result<Self, Failure> {
+    /// Sets up threads, signals, the deadline, the cap on memory and the progress bar.
+    pub fn new(common: &CommonArgs, max_memory: Option<u64>) -> Result<Self, Failure> {
         let start = Instant::now();
-        if let Some(threads) = common.threads {
-            rayon::ThreadPoolBuilder::new()
-                .num_threads(threads.into())
-                .build_global()
-                .map_err(|e| Failure::internal(format!("cannot start {threads} threads: {e}")))?;
-        }
-        let unfinished = Unfinished::default();
         let meter = Arc::new(Meter::new(!common.quiet));
         let flag = Arc::new(AtomicBool::new(false));
         let listening = meter.clone();
         let mut progress = Progress::none().with_flag(flag.clone()).with_listener(move |event| listening.show(event));
-        if let Some(deadline) = common.timeout.and_then(|timeout| start.checked_add(timeout)) {
+        let deadline = common.timeout.and_then(|timeout| start.checked_add(timeout));
+        if let Some(deadline) = deadline {
             progress = progress.with_deadline(deadline);
-            watch_deadline(deadline, unfinished.clone());
         }
-        watch_signals(flag, unfinished.clone())?;
-        Ok(Self { start, progress, verbose: common.verbose, quiet: common.quiet, meter, unfinished })
+        let ending = Ending::watch(deadline, max_memory, flag)?;
+        let fewer = machine::start_threads(common.threads)?;
+        let lines = RefCell::new(fewer.iter().map(|line| format!("note: {line}")).collect());
+        Ok(Self { start, progress, verbose: common.verbose, quiet: common.quiet, meter, ending, lines })
     }
 
-    /// A line for the user, unless `-q`.
+    /// A line for the user at the end, when all files are in their places, unless `-q`.
     pub fn say(&self, line: &str) {
+        self.lines.borrow_mut().push(line.to_owned());
+    }
+
+    /// A line for the user now, unless `-q`.
+    pub fn tell(&self, line: &str) {
         if !self.quiet {
             self.meter.above(|| eprintln_quietly(line));
         }
@@ -63,73 +74,52 @@ impl Session {
         self.meter.clear();
     }
 
-    /// Notes that `path` exists and must go if the run ends early.
-    pub fn temporary(&self, path: &Path) {
-        self.unfinished.lock().temporary = Some(path.to_path_buf());
+    /// A file that [`Session::publish`] will name `path`, and that will be gone if the run ends before.
+    pub fn draft(&self, path: &Path) -> Result<Drafted, Failure> {
+        let mut state = self.ending.lock();
+        let (draft, file) = Draft::new(path).map_err(|error| output::unwritable(path, &error))?;
+        let path = draft.temporary().to_owned();
+        state.drafts.push(draft);
+        Ok(Drafted { file, path })
     }
 
-    /// Does the last, indivisible step (`finish`: a rename) unless the run was stopped before.
-    /// After it, a signal can no longer undo the run.
-    pub fn finish<T>(&self, finish: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
-        let mut state = self.unfinished.lock();
-        self.progress.check()?;
-        let result = finish()?;
-        *state = State { temporary: None, finished: true };
-        Ok(result)
-    }
-}
-
-/// What must not be left behind; shared with the threads that may end the process.
-#[derive(Clone, Default)]
-struct Unfinished(Arc<Mutex<State>>);
-
-#[derive(Default)]
-struct State {
-    temporary: Option<PathBuf>,
-    finished: bool,
-}
-
-impl Unfinished {
-    fn lock(&self) -> MutexGuard<'_, State> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    /// An error when the run was to stop before its files get their names; without files nothing is undone any more.
+    pub fn check_files(&self) -> Result<(), Failure> {
+        let files = !self.ending.lock().drafts.is_empty();
+        if files { Ok(self.progress.check()?) } else { Ok(()) }
     }
 
-    /// Ends the process, leaving nothing behind, unless its work is done. Holds the lock to the
-    /// end, so that no rename can come in between.
-    fn abandon(&self, stopped: Stopped) {
-        let state = self.lock();
-        if state.finished {
-            return;
+    /// Removes all files that have not got their names.
+    pub fn discard(&self) {
+        self.ending.lock().drafts.clear();
+    }
+
+    /// The last, indivisible step: gives all files their names, or none. After it, nothing can undo the run, which ends
+    /// with `exit`.
+    pub fn publish(&self, exit: Exit) -> Result<(), Failure> {
+        let mut state = self.ending.lock();
+        let drafts = std::mem::take(&mut state.drafts);
+        let targets: Vec<PathBuf> = drafts.iter().map(|draft| draft.target().to_owned()).collect();
+        publish(drafts).map_err(|(number, error)| output::unwritable(&targets[number], &error))?;
+        state.finished = Some(exit);
+        drop(state);
+        flush_folders(targets.iter().map(PathBuf::as_path));
+        Ok(())
+    }
+
+    /// Prints what was said.
+    pub fn speak(&self) {
+        for line in self.lines.take() {
+            self.tell(&line);
         }
-        if let Some(path) = &state.temporary {
-            let _ = std::fs::remove_file(path);
-        }
-        let failure = Failure::from(stopped);
-        print_failure(&failure);
-        std::process::exit(failure.exit.code().into());
     }
 }
 
-fn watch_deadline(deadline: Instant, unfinished: Unfinished) {
-    std::thread::spawn(move || {
-        std::thread::sleep((deadline + PATIENCE).saturating_duration_since(Instant::now()));
-        unfinished.abandon(Stopped::Deadline);
-    });
-}
-
-fn watch_signals(flag: Arc<AtomicBool>, unfinished: Unfinished) -> Result<(), Failure> {
-    ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            unfinished.abandon(Stopped::Interrupted);
-            std::process::exit(Exit::Interrupted.code().into());
-        }
-        let unfinished = unfinished.clone();
-        std::thread::spawn(move || {
-            std::thread::sleep(PATIENCE);
-            unfinished.abandon(Stopped::Interrupted);
-        });
-    })
-    .map_err(|e| Failure::internal(format!("cannot listen for Ctrl-C: {e}")))
+impl Drop for Session {
+    /// Also when the work panics, nothing stays behind.
+    fn drop(&mut self) {
+        self.discard();
+    }
 }
 
 /// `error: ...`, the place, and `hint: ...` on standard error.

@@ -9,13 +9,13 @@ use serde_json::json;
 
 use super::args::SolidArgs;
 use super::change::{self, Change, Changed};
-use super::exit::{Exit, Failure};
+use super::exit::{Asked, Exit, Failure};
 use super::input::{self, Input};
 use super::length::{Scale, Simplify};
-use super::output::{Target, write_verified};
+use super::output::{self, Target, write_verified};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
-use super::{backend, limits, summary, words};
+use super::{backend, limits, machine, summary, words};
 use crate::fit::FitOptions;
 use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
 use crate::ldi::Expression;
@@ -45,13 +45,8 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
         return Err(Failure::usage("where to write the result is not said: --output OUT")
             .hint("--plan says what it would cost, without an output"));
     }
-    let mut target = args.output.as_deref().map(|path| Target::new(path, &args.writing, &job.paths)).transpose()?;
-    if let Some(map) = &args.map {
-        super::compare::check_map(map, &job.paths)?;
-        if args.output.as_deref().is_some_and(|output| output == map) {
-            return Err(Failure::usage("--map and -o name the same file"));
-        }
-    }
+    let mut target = args.output.as_deref().map(|path| Target::new(path, &args.writing)).transpose()?;
+    args.map.as_deref().map_or(Ok(()), super::compare::check_map)?;
     let mut inputs = report.timed("read", |_| input::read_all(&job.paths, &args.reading, session))?;
     for (input, name) in inputs.iter_mut().zip(&job.names) {
         input.entry.name = Some(name.clone());
@@ -89,7 +84,7 @@ fn options(
         rule: args.vote.into(),
         robust: RobustOptions { trust: trust(args.vote.into()), ..RobustOptions::default() },
         collapse: !args.no_collapse,
-        max_memory: args.max_memory,
+        max_memory: machine::memory_cap(args.max_memory),
         backend: args.backend.into(),
         precision: target.map_or(Precision::Double, |target| Precision::of_format(target.options.format)),
         ..Options::new(voxel)
@@ -137,7 +132,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
         "simplify_voxels": options.fit.map(|fit| fit.tolerance),
         "simplify_as_given": args.simplify.map(|simplify| simplify.to_string()),
         "threads": rayon::current_num_threads(),
-        "max_memory_bytes": options.max_memory,
+        "max_memory_bytes": args.max_memory,
         "timeout_seconds": args.common.timeout.map(|timeout| timeout.as_secs_f64()),
     })
 }
@@ -145,7 +140,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
 fn failure(error: &pipeline::Error, inputs: &[Input], unit: Option<Unit>, args: &SolidArgs) -> Failure {
     let labels: Vec<String> = inputs.iter().map(|input| input.label.clone()).collect();
     let unit = unit.map(|unit| unit.to_string());
-    Failure::pipeline(error, &labels, unit.as_deref(), args.voxel.is_some())
+    Failure::pipeline(error, &labels, unit.as_deref(), Asked { voxel: args.voxel.is_some(), memory: args.max_memory })
 }
 
 fn plan(
@@ -168,7 +163,9 @@ fn plan(
         super::output::write_stream(text.as_bytes())?;
     }
     match options.max_memory {
-        Some(cap) if plan.memory > cap => Err(Failure::memory(plan.memory, cap).hint("a lower --resolution")),
+        Some(cap) if plan.memory > cap => {
+            Err(Failure::memory(plan.memory, cap, args.max_memory).hint("a lower --resolution"))
+        }
         _ => Ok(Exit::Done),
     }
 }
@@ -208,10 +205,10 @@ fn make(
         let colours = pipeline::carry_colours(&outcome, &operands);
         write(&outcome.mesh, colours.as_ref(), target, session, report)?;
     }
-    let broken = limits::broken(report, options.max_memory);
+    let broken = limits::broken(report, args.max_memory);
     report.warnings.extend(broken.iter().cloned());
     report.seconds = session.start.elapsed().as_secs_f64();
-    report.peak_memory_bytes = super::report::peak_memory();
+    report.peak_memory_bytes = super::machine::peak_memory();
     session.clear_bar();
     let name = unit.map(|unit| unit.to_string());
     summary::say(session, report, name.as_deref());
@@ -281,8 +278,10 @@ fn write_map(path: &Path, outcome: &Outcome, canal_of: &[u32], session: &Session
     };
     let colours = Colours::Faces(outcome.sources.iter().enumerate().map(colour).collect());
     session.progress.check()?;
-    io::write_coloured(path, &outcome.mesh, Some(&colours), &WriteOptions::new(Format::Ply))
-        .map_err(|e| Failure::internal(e.to_string()))
+    let mut bytes = Vec::new();
+    io::encode_coloured(&outcome.mesh, Some(&colours), &WriteOptions::new(Format::Ply), &mut bytes)
+        .map_err(|error| output::unencoded(path, &error))?;
+    output::write_side(path, &bytes, session)
 }
 
 /// Whether the file as read back holds the mesh that was made, and keeps the program's promise. `moved`: how far rounding to the

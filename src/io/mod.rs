@@ -20,6 +20,7 @@
 //! ```
 
 mod colour;
+pub(crate) mod draft;
 mod error;
 mod format;
 mod gltf;

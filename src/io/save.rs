@@ -2,13 +2,14 @@
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use super::draft::{Draft, flush_folders, publish};
 use super::error::WriteError;
 
-/// Lets `write` fill a temporary file beside `path`, flushes it to the disk and renames it to
-/// `path`. On an error, and if the process dies, `path` is as it was before; on an error nothing
-/// else is left either. A link is followed, and what is not a regular file (a pipe, a device) is
+/// Lets `write` fill a temporary file beside `path`, flushes it to the disk, renames it to `path` and
+/// flushes the folder. On an error, and if the process dies, `path` is as it was before; on an error
+/// nothing else is left either. A link is followed, and what is not a regular file (a pipe, a device) is
 /// written to directly.
 ///
 /// # Errors
@@ -27,36 +28,18 @@ pub(super) fn save(
             let file = OpenOptions::new().write(true).open(path).map_err(|e| place(e.into()))?;
             fill(file, write).map(drop).map_err(place)
         }
-        existing => replace(path, existing.ok(), write).map_err(place),
+        _ => replace(path, write).map_err(place),
     }
 }
 
-fn replace(
-    path: &Path,
-    existing: Option<fs::Metadata>,
-    write: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>,
-) -> Result<(), WriteError> {
-    let target = if existing.is_some() { fs::canonicalize(path)? } else { path.to_owned() };
-    let folder = match target.parent() {
-        Some(folder) if folder != Path::new("") => folder.to_owned(),
-        _ => PathBuf::from("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".meshwright-").suffix(".part");
-    #[cfg(unix)]
-    {
-        // As an ordinary new file gets them; the process's mask still applies.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    let (file, temporary) = builder.tempfile_in(folder)?.into_parts();
+fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<(), WriteError>) -> Result<(), WriteError> {
+    let (draft, file) = Draft::new(path)?;
+    let target = draft.target().to_owned();
     let file = fill(file, write)?;
-    if let Some(existing) = existing {
-        file.set_permissions(existing.permissions())?;
-    }
     file.sync_all()?;
     drop(file);
-    temporary.persist(&target).map_err(|e| e.error)?;
+    publish(vec![draft]).map_err(|(_, error)| error)?;
+    flush_folders([target.as_path()]);
     Ok(())
 }
 

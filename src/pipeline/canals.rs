@@ -64,7 +64,7 @@ pub fn canals(input: &TriMesh, options: &CanalOptions, progress: &Progress) -> R
     let radius = usable(options.max_diameter / 2.0)?;
     let frame = Frame::of(std::slice::from_ref(input));
     let input = &frame.local(std::slice::from_ref(input))[0];
-    check_offsets(input, &options.solid, Offsets { count: 2, radius })?;
+    check_offsets(input, &options.solid, Offsets { count: 2, radius, thin: false })?;
     let solid = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let closing = MorphologyOptions { operation: Operation::Close, radius, mitre: None, solid: options.solid.clone() };
     let mut stages = stages::Stages::new(progress);

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::backend::{self, PrismError};
 use super::frame::Frame;
-use super::plan::Input;
+use super::plan::{BASE_BYTES, Input};
 use super::{Backend, BackendReport, Error, StageTime, VoxelSize, prepare, solid, stages};
 use crate::lattice::{BRICK, Grid, Lattice, Slot};
 use crate::ldi::{Expression, MAX_VOXELS, Spans, ldis, spans};
@@ -17,8 +17,13 @@ use crate::sdf::exact::{self, Band, ExactError, ExactOptions, Sign};
 use crate::sdf::{self, Levels, LevelsError, RobustOptions, characteristics, levels_memory};
 use crate::vote::{Jury, VoteReport, VoteRule, Winding, doubts, vote_near_surface};
 
+/// Bytes per h² of surface and per triangle that are there besides the field, for each way to the sides.
+const VOTES_BYTES: [f64; 2] = [190.0, 540.0];
+const WINDING_BYTES: [f64; 2] = [355.0, 210.0];
+const LEVELS_BYTES: [f64; 2] = [185.0, 180.0];
+const ROBUST_BYTES: [f64; 2] = [480.0, 270.0];
 /// Bytes per stored voxel of the marched field: the field, what is done, and the front.
-const MARCHED_BYTES: f64 = 9.0;
+const MARCHED_BYTES: f64 = 10.5;
 /// Seconds per stored voxel of the marched field.
 const MARCHED_SECONDS: f64 = 1200e-9;
 /// Seconds per stored voxel for the winding number.
@@ -211,22 +216,27 @@ fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOption
         DistanceMethod::Exact | DistanceMethod::Prism | DistanceMethod::Robust => exact::cost(input, lattice, band),
     };
     let all = lattice.dims.as_dvec3().element_product();
-    let (mut memory, mut seconds) = (exact.memory as f64, exact.seconds);
+    let (mut memory, mut seconds) = (BASE_BYTES + exact.memory as f64, exact.seconds);
+    let surface = Input::of(std::slice::from_ref(input));
+    let (cells, triangles, voxels) = (surface.cells(lattice), input.triangles.len() as f64, exact.voxels as f64);
     if options.votes() {
-        let votes = Input::of(std::slice::from_ref(input)).votes(lattice);
-        memory += votes.memory as f64;
-        seconds += votes.seconds;
+        seconds += surface.votes_seconds(lattice);
     }
+    let beside = |[cell, triangle]: [f64; 2]| cell * cells + triangle * triangles;
     match (options.method, options.sign) {
-        (DistanceMethod::Exact, DistanceSign::Winding) => seconds += WINDING_SECONDS * exact.voxels as f64,
+        (DistanceMethod::Robust, _) => {
+            memory = BASE_BYTES + beside(ROBUST_BYTES) + MARCHED_BYTES * voxels;
+            seconds += MARCHED_SECONDS * voxels;
+        }
+        (DistanceMethod::Exact, DistanceSign::Votes) => memory += beside(VOTES_BYTES),
+        (DistanceMethod::Exact, DistanceSign::Winding) => {
+            memory += beside(WINDING_BYTES);
+            seconds += WINDING_SECONDS * voxels;
+        }
         (DistanceMethod::Exact, DistanceSign::Levels) => {
-            memory += levels_memory(lattice, input.triangles.len()) as f64;
+            memory += beside(LEVELS_BYTES) + levels_memory(lattice, input.triangles.len()) as f64;
         }
         _ => {}
-    }
-    if options.method == DistanceMethod::Robust {
-        memory += MARCHED_BYTES * exact.voxels as f64;
-        seconds += MARCHED_SECONDS * exact.voxels as f64;
     }
     DistancePlan {
         voxel: lattice.h,
@@ -249,7 +259,7 @@ fn refusal(error: ExactError) -> Error {
 fn no_levels(error: LevelsError) -> Error {
     match error {
         LevelsError::Stopped(stopped) => stopped.into(),
-        LevelsError::Memory { .. } => Error::VoxelSize { reason: error.to_string() },
+        LevelsError::Memory { .. } => Error::NoRoom { reason: error.to_string() },
     }
 }
 

@@ -15,6 +15,7 @@ mod refine;
 mod report;
 mod solid;
 mod stages;
+mod survey;
 mod thicken;
 mod thickness;
 mod topology;
@@ -217,6 +218,12 @@ pub enum Error {
         allowed: u64,
         /// A voxel size that fits, model units; `None` when no size does.
         voxel_that_fits: Option<f64>,
+    },
+    /// A piece of memory could not be had.
+    #[error("{reason}")]
+    NoRoom {
+        /// One sentence: for what, and what to try.
+        reason: String,
     },
     /// A filter cannot be.
     #[error(transparent)]

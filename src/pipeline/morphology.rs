@@ -50,7 +50,7 @@ pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progr
     let radius = usable(options.radius)?;
     let frame = Frame::of(std::slice::from_ref(input));
     let input = &frame.local(std::slice::from_ref(input))[0];
-    check_offsets(input, &options.solid, Offsets { count: options.operation.offsets(), radius })?;
+    check_offsets(input, &options.solid, Offsets { count: options.operation.offsets(), radius, thin: false })?;
     let outcome = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let mut stages = stages::Stages::new(progress);
     let h = prepare::spacing(&prepare::bounds(std::slice::from_ref(input))?, options.solid.voxel)?;

@@ -1,36 +1,70 @@
 //! What a run costs, estimated before anything is allocated.
 
+use glam::DVec3;
+
+use super::survey::Survey;
 use super::{CanalOptions, Error, MorphologyOptions, Options, Plan, ThickenOptions, prepare};
-use crate::lattice::{DIRECTIONS, Lattice};
+use crate::lattice::Lattice;
 use crate::ldi::{MAX_CROSSINGS, MAX_TRIANGLES};
 use crate::mesh::TriMesh;
 
-/// Bytes per h² of surface at the peak. Measured as the growth of the peak between 128 and 256 on
-/// the bunny, fandisk and 520644 (see `docs/benchmarks.md`), rounded up.
-const BYTES_PER_CELL: f64 = 2200.0;
+/// Bytes of the program itself, its threads and what it reads into.
+pub(super) const BASE_BYTES: f64 = 11e6;
 /// Crossings of the rays of all 13 directions per h² of surface, whichever way it lies: 8.5 to 9.3.
 const CROSSINGS_PER_CELL: f64 = 9.3;
 /// Bytes per crossing, for surface beyond what the lattice has cells for: many layers on few rays.
 const BYTES_PER_CROSSING: f64 = 50.0;
-/// Bytes per input triangle at the peak, the file's text included.
-const BYTES_PER_TRIANGLE: f64 = 400.0;
-/// Bytes of the program itself.
-const BASE_BYTES: f64 = 12e6;
+
+/// Bytes at the peak for each of what it depends on. Fitted by `tools/plan.py` to all of the data set (see
+/// `docs/benchmarks.md`), and an eighth more, so that few runs need more than is planned.
+struct Rates {
+    /// Whatever the input.
+    base: f64,
+    /// Per h² of surface.
+    cell: f64,
+    /// Per triangle of the input.
+    triangle: f64,
+    /// Per h² of what closes holes, besides.
+    lid: f64,
+    /// Per h² of surface beside bends, besides.
+    bend: f64,
+    /// Per h² of three sides of the box, one of each pair: rays.
+    side: f64,
+    /// Per voxel of the band around the surface.
+    voxel: f64,
+}
+
+/// Most triangles stay as they are.
+const KEPT: Rates =
+    Rates { base: 11.5e6, cell: 1110.0, triangle: 600.0, lid: 2100.0, bend: 0.0, side: 85.0, voxel: 0.0 };
+/// The surface is built anew, and what is flat is simplified.
+const REBUILT: Rates =
+    Rates { base: 12.5e6, cell: 1080.0, triangle: 500.0, lid: 3180.0, bend: 2720.0, side: 270.0, voxel: 0.0 };
+/// The contour stays as it is.
+const UNFITTED: Rates =
+    Rates { base: 11e6, cell: 1160.0, triangle: 265.0, lid: 1300.0, bend: 320.0, side: 150.0, voxel: 0.0 };
+/// One offset of the solid, after it.
+const OFFSET: Rates =
+    Rates { base: 27e6, cell: 0.0, triangle: 219.0, lid: 4570.0, bend: 3572.0, side: 0.0, voxel: 87.0 };
+/// Two, the second from the first.
+const OFFSET_AND_BACK: Rates =
+    Rates { base: 75e6, cell: 0.0, triangle: 30.0, lid: 9000.0, bend: 5500.0, side: 0.0, voxel: 215.0 };
+/// One, where walls are thin.
+const THICKENED: Rates =
+    Rates { base: 13e6, cell: 1200.0, triangle: 0.0, lid: 5600.0, bend: 2760.0, side: 0.0, voxel: 0.0 };
+
+/// The band of an offset is this much wider than its radius, h.
+const OFFSET_MARGIN: f64 = 4.0;
+
 /// Seconds on one core per h² of surface, fit included, and per input triangle.
 const SECONDS_PER_CELL: f64 = 22e-6;
 const SECONDS_PER_TRIANGLE: f64 = 3e-6;
-/// Of that, and of the memory at the peak, what is spent up to the votes.
+/// Of that what is spent up to the votes.
 const VOTES_SECONDS: f64 = 0.2;
-const VOTES_MEMORY: f64 = 0.4;
 /// Triangles of the result per h² of surface.
 const TRIANGLES_PER_CELL: f64 = 2.2;
 
-/// What an offset of the solid adds: bytes per h² of surface and per triangle, bytes per h² for each h of the radius, and how
-/// many times the seconds. Measured with closings, two offsets, of the bunny and fandisk at 128 and 256, 2 h to 16 h, and
-/// rounded up.
-const OFFSET_BYTES_PER_CELL: f64 = 900.0;
-const OFFSET_BYTES_PER_TRIANGLE: f64 = 1500.0;
-const OFFSET_BYTES_PER_CELL_AND_RADIUS: f64 = 125.0;
+/// How many times the seconds an offset adds.
 const OFFSET_SECONDS: f64 = 5.0;
 
 /// Offsets of the solid that are made after it.
@@ -40,6 +74,19 @@ pub(super) struct Offsets {
     pub count: u32,
     /// Their radius, model units.
     pub radius: f64,
+    /// Whether they are made only where walls are thin.
+    pub thin: bool,
+}
+
+impl Offsets {
+    fn rates(self) -> Option<&'static Rates> {
+        match (self.count, self.thin) {
+            (0, _) => None,
+            (_, true) => Some(&THICKENED),
+            (1, false) => Some(&OFFSET),
+            _ => Some(&OFFSET_AND_BACK),
+        }
+    }
 }
 
 /// What [`super::boolean`] (and [`super::repair`]: one operand) would cost.
@@ -49,25 +96,26 @@ pub fn plan(operands: &[TriMesh], options: &Options) -> Result<Plan, Error> {
 
 /// What [`super::morphology`] would cost.
 pub fn plan_morphology(input: &TriMesh, options: &MorphologyOptions) -> Result<Plan, Error> {
-    let offsets = Offsets { count: options.operation.offsets(), radius: super::morphology::usable(options.radius)? };
+    let offsets =
+        Offsets { count: options.operation.offsets(), radius: super::morphology::usable(options.radius)?, thin: false };
     plan_with(std::slice::from_ref(input), &options.solid, offsets)
 }
 
 /// What [`super::canals`] would cost.
 pub fn plan_canals(input: &TriMesh, options: &CanalOptions) -> Result<Plan, Error> {
     let radius = super::morphology::usable(options.max_diameter / 2.0)?;
-    plan_with(std::slice::from_ref(input), &options.solid, Offsets { count: 2, radius })
+    plan_with(std::slice::from_ref(input), &options.solid, Offsets { count: 2, radius, thin: false })
 }
 
 /// What [`super::thicken`] would cost.
 pub fn plan_thicken(input: &TriMesh, options: &ThickenOptions) -> Result<Plan, Error> {
     let radius = super::morphology::usable(options.least / 2.0)?;
-    plan_with(std::slice::from_ref(input), &options.solid, Offsets { count: 1, radius })
+    plan_with(std::slice::from_ref(input), &options.solid, Offsets { count: 1, radius, thin: true })
 }
 
 fn plan_with(operands: &[TriMesh], options: &Options, offsets: Offsets) -> Result<Plan, Error> {
     let lattice = prepare::lattice(&prepare::bounds(operands)?, options.voxel)?;
-    Ok(Input::of(operands).cost(&lattice, offsets))
+    Ok(Input::surveyed(operands).cost(&lattice, options, offsets))
 }
 
 /// An error when the run would need more memory than allowed, or more than 32 bits to number things.
@@ -80,7 +128,12 @@ pub(super) fn check_limits(
     let input = Input::of(operands);
     input.check_numbers(lattice)?;
     let Some(allowed) = options.max_memory else { return Ok(()) };
-    let needed = input.cost(lattice, offsets).memory;
+    // Most runs are allowed more than the worst surface of this size needs, and nothing is to be looked at.
+    if input.cost(lattice, options, offsets).memory <= allowed {
+        return Ok(());
+    }
+    let input = Input::surveyed(operands);
+    let needed = input.cost(lattice, options, offsets).memory;
     if needed <= allowed {
         return Ok(());
     }
@@ -89,7 +142,7 @@ pub(super) fn check_limits(
     let mut h = lattice.h;
     while h < bounds.size().max_element() {
         h *= 1.1;
-        if input.cost(&Lattice::around(&bounds, h), offsets).memory <= allowed {
+        if input.cost(&Lattice::around(&bounds, h), options, offsets).memory <= allowed {
             voxel_that_fits = Some(h);
             break;
         }
@@ -115,6 +168,8 @@ pub(super) struct Input {
     vertices: usize,
     /// Square model units.
     area: f64,
+    /// What of it has to be made; without it the worst is assumed.
+    survey: Option<Survey>,
 }
 
 impl Input {
@@ -123,7 +178,13 @@ impl Input {
             triangles: operands.iter().map(|m| m.triangles.len()).sum(),
             vertices: operands.iter().map(|m| m.positions.len()).sum(),
             area: operands.iter().map(area).sum(),
+            survey: None,
         }
+    }
+
+    /// The same, with a look at holes and bends.
+    fn surveyed(operands: &[TriMesh]) -> Self {
+        Self { survey: Some(Survey::of_all(operands)), ..Self::of(operands) }
     }
 
     /// Area in h².
@@ -156,35 +217,70 @@ impl Input {
         Ok(())
     }
 
-    /// What orientation, rays and votes cost.
-    pub(super) fn votes(&self, lattice: &Lattice) -> Plan {
-        let plan = self.cost(lattice, Offsets::default());
-        let memory = (VOTES_MEMORY * plan.memory as f64) as u64;
-        Plan { seconds: VOTES_SECONDS * plan.seconds, memory, ..plan }
+    /// Seconds for orientation, rays and votes.
+    pub(super) fn votes_seconds(&self, lattice: &Lattice) -> f64 {
+        VOTES_SECONDS * self.seconds(self.cells(lattice))
     }
 
-    fn cost(&self, lattice: &Lattice, offsets: Offsets) -> Plan {
-        // No more surface is kept than the lattice has cells; the crossings are there all the same.
-        let surface = self.surface(lattice);
-        let cells = surface.min(lattice.dims.as_dvec3().element_product());
-        let buried = (surface - cells).max(0.0) * CROSSINGS_PER_CELL * BYTES_PER_CROSSING;
-        let rays = DIRECTIONS.iter().map(|d| d.ray_window(lattice.dims).1.map(f64::from));
-        let rays: f64 = rays.map(|[u, v]| u * v).sum();
-        let triangles = self.triangles as f64;
-        let memory = BASE_BYTES + 4.2 * rays + BYTES_PER_CELL * cells + buried + BYTES_PER_TRIANGLE * triangles;
-        let count = f64::from(offsets.count);
-        let per_cell = OFFSET_BYTES_PER_CELL + OFFSET_BYTES_PER_CELL_AND_RADIUS * offsets.radius / lattice.h;
-        let memory = memory + count * (per_cell * cells + OFFSET_BYTES_PER_TRIANGLE * triangles);
-        let seconds = SECONDS_PER_CELL * cells + SECONDS_PER_TRIANGLE * triangles;
+    /// No more surface is kept than the lattice has cells.
+    pub(super) fn cells(&self, lattice: &Lattice) -> f64 {
+        self.surface(lattice).min(lattice.dims.as_dvec3().element_product())
+    }
+
+    fn seconds(&self, cells: f64) -> f64 {
+        SECONDS_PER_CELL * cells + SECONDS_PER_TRIANGLE * self.triangles as f64
+    }
+
+    /// Of the whole run, from file to file.
+    fn cost(&self, lattice: &Lattice, options: &Options, offsets: Offsets) -> Plan {
+        let cells = self.cells(lattice);
+        let rates = match &options.fit {
+            None => &UNFITTED,
+            Some(fit) if fit.keep => &KEPT,
+            Some(_) => &REBUILT,
+        };
+        // What comes after the solid comes when the memory for it is free again.
+        let solid = self.memory(rates, lattice, 0.0);
+        let after = offsets.rates().map_or(0.0, |rates| self.memory(rates, lattice, offsets.radius / lattice.h));
         Plan {
             voxel: lattice.h,
             dims: lattice.dims.to_array(),
             voxels_near_surface: (2.0 * cells) as u64,
             triangles: (TRIANGLES_PER_CELL * cells) as u64,
-            memory: memory as u64,
-            seconds: seconds * (1.0 + OFFSET_SECONDS * count),
+            memory: solid.max(after) as u64,
+            seconds: self.seconds(cells) * (1.0 + OFFSET_SECONDS * f64::from(offsets.count)),
         }
     }
+
+    /// Bytes at the peak of work that costs `rates`; `radius`: of an offset, h.
+    fn memory(&self, rates: &Rates, lattice: &Lattice, radius: f64) -> f64 {
+        let (surface, cells) = (self.surface(lattice), self.cells(lattice));
+        // The crossings of what is beyond the cells are there all the same.
+        let buried = (surface - cells) * CROSSINGS_PER_CELL * BYTES_PER_CROSSING;
+        let (lids, bends) = match &self.survey {
+            Some(survey) => (survey.lids / (lattice.h * lattice.h), survey.bent_cells(lattice.h)),
+            None => (cells, cells),
+        };
+        let size = lattice.dims.as_dvec3();
+        let sides = size.x * size.y + size.y * size.z + size.z * size.x;
+        let reach = radius + OFFSET_MARGIN;
+        let band = around(cells, size, reach).min((size + 2.0 * reach).element_product());
+        rates.base
+            + rates.cell * cells
+            + rates.triangle * self.triangles as f64
+            + rates.lid * lids.min(cells)
+            + rates.bend * bends.min(cells)
+            + rates.side * sides
+            + rates.voxel * band
+            + buried
+    }
+}
+
+/// Voxels within `r` of a surface of `cells`: on both sides of it, and as much more outside as there is around a box of this
+/// size (Steiner).
+fn around(cells: f64, size: DVec3, r: f64) -> f64 {
+    let pi = std::f64::consts::PI;
+    2.0 * cells * r + pi * size.element_sum() * r * r + 4.0 / 3.0 * pi * r.powi(3)
 }
 
 /// Square model units.
@@ -244,15 +340,17 @@ mod tests {
         let input = [stack(4)];
         let bounds = prepare::bounds(&input).expect("bounds");
         let lattice = prepare::lattice(&bounds, VoxelSize::Along(500)).expect("a lattice");
-        let needed = Input::of(&input).cost(&lattice, Offsets::default()).memory;
+        let options = Options::new(VoxelSize::Along(500));
+        let needed = Input::surveyed(&input).cost(&lattice, &options, Offsets::default()).memory;
         let allowed = needed / 2;
-        let options = Options { max_memory: Some(allowed), ..Options::new(VoxelSize::Along(500)) };
+        let options = Options { max_memory: Some(allowed), ..options };
         let Err(Error::Memory { voxel_that_fits: Some(h), .. }) =
             check_limits(&input, &lattice, &options, Offsets::default())
         else {
             panic!("allowed");
         };
-        let at = |h: f64| Input::of(&input).cost(&Lattice::around(&bounds, h), Offsets::default()).memory;
+        let at =
+            |h: f64| Input::surveyed(&input).cost(&Lattice::around(&bounds, h), &options, Offsets::default()).memory;
         assert!(at(h) <= allowed && at(h / 1.1) > allowed);
     }
 
@@ -267,9 +365,10 @@ mod tests {
         let plain = plan(std::slice::from_ref(&input), &solid).expect("a plan");
         let costs = [plain, of(Operation::Dilate, 0.1), of(Operation::Close, 0.1), of(Operation::Close, 0.2)];
         assert!(costs.is_sorted_by(|a, b| a.memory < b.memory && a.seconds <= b.seconds), "{costs:?}");
-        let options = Options { max_memory: Some(plain.memory), ..solid.clone() };
+        let between = (costs[0].memory + costs[1].memory) / 2;
+        let options = Options { max_memory: Some(between), ..solid.clone() };
         assert_eq!(check_offsets(&input, &options, Offsets::default()), Ok(()));
-        let refused = check_offsets(&input, &options, Offsets { count: 1, radius: 0.1 });
+        let refused = check_offsets(&input, &options, Offsets { count: 1, radius: 0.1, thin: false });
         assert!(matches!(refused, Err(Error::Memory { voxel_that_fits: Some(_), .. })), "{refused:?}");
     }
 }

@@ -76,7 +76,7 @@ pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -
         });
     }
     let fixed = Options { voxel: VoxelSize::Length(h), ..options.solid.clone() };
-    check_offsets(input, &fixed, Offsets { count: 1, radius: least / 2.0 })?;
+    check_offsets(input, &fixed, Offsets { count: 1, radius: least / 2.0, thin: true })?;
     let solid = match boolean(std::slice::from_ref(input), &Expression::Operand(0), &fixed, progress) {
         Ok(outcome) => Some(outcome),
         Err(Error::NothingEnclosed { .. }) => None,

@@ -24,7 +24,8 @@ fn a_deadline_that_has_passed_exits_with_6() {
 fn a_deadline_within_the_work_stops_it() {
     let folder = folder();
     let start = Instant::now();
-    run_in(&folder, "repair testdata/broken_mug.obj -o OUT/a.stl --resolution 2048 --timeout 500ms").exits(6);
+    run_in(&folder, "repair testdata/broken_mug.obj -o OUT/a.stl --resolution 2048 --max-memory 200G --timeout 500ms")
+        .exits(6);
     assert!(start.elapsed() < Duration::from_secs(3), "it took {:?}", start.elapsed());
     assert_empty(&folder);
 }
@@ -48,7 +49,7 @@ fn a_memory_cap_refuses_before_the_work() {
 fn interrupt(folder: &tempfile::TempDir, signals: usize) -> (i32, String, Duration) {
     let out = folder.path().join("a.stl");
     let child = program()
-        .args(["repair", "testdata/broken_mug.obj", "--resolution", "2048", "-o"])
+        .args(["repair", "testdata/broken_mug.obj", "--resolution", "2048", "--max-memory", "200G", "-o"])
         .arg(&out)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

@@ -45,7 +45,7 @@ fn wrong_usage_exits_with_2_and_a_sentence() {
         ("repair testdata/torus.ply -o - --out-format stl --json", "both want standard output"),
         ("repair testdata/torus.ply -o OUT/nowhere/a.stl", "nowhere"),
         ("repair testdata/torus.ply -o OUT", "OUT"),
-        ("repair testdata/torus.ply -o OUT/a.stl --report OUT/a.stl", "also an input or the output"),
+        ("repair testdata/torus.ply -o OUT/a.stl --report OUT/a.stl", "are the same file"),
         ("repair testdata/torus.ply -o OUT/a.stl --report -", "--report wants a file"),
         ("repair testdata/torus.ply -o OUT/a.stl -q -v", "cannot be used with"),
         ("union testdata/torus.ply -o OUT/a.stl", "2"),
