@@ -248,13 +248,19 @@ fn details(report: &RunReport, pipeline: &Report, unit: UnitName<'_>) -> Vec<Row
 
 /// The rows of `--plan`.
 pub fn plan(plan: &Plan, unit: UnitName<'_>) -> Vec<Row> {
-    vec![
-        ("voxel", voxel(plan.voxel, plan.dims, unit)),
-        ("surface", format!("about {}", words::plural(plan.voxels_near_surface as usize, "voxel"))),
+    let lattice = match plan.dims {
+        [0, 0, 0] => vec![("voxel", "none: every closed surface stays as it is".into())],
+        dims => vec![
+            ("voxel", voxel(plan.voxel, dims, unit)),
+            ("surface", format!("about {}", words::plural(plan.voxels_near_surface as usize, "voxel"))),
+        ],
+    };
+    let rest = [
         ("result", format!("about {}", words::plural(plan.triangles as usize, "triangle"))),
         ("memory", format!("about {}", words::bytes(plan.memory))),
         ("time", format!("about {} on one core", words::seconds(plan.seconds))),
-    ]
+    ];
+    lattice.into_iter().chain(rest).collect()
 }
 
 /// As many objects of a file are listed by name.

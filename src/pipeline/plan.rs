@@ -2,11 +2,14 @@
 
 use glam::DVec3;
 
+use super::apart::Apart;
+use super::frame::Frame;
 use super::survey::Survey;
-use super::{CanalOptions, Error, MorphologyOptions, Options, Plan, ThickenOptions, prepare};
+use super::{CanalOptions, Error, MorphologyOptions, Options, Plan, ThickenOptions, VoxelSize, prepare};
 use crate::lattice::Lattice;
-use crate::ldi::{MAX_CROSSINGS, MAX_TRIANGLES};
+use crate::ldi::{Expression, MAX_CROSSINGS, MAX_TRIANGLES};
 use crate::mesh::TriMesh;
+use crate::progress::Progress;
 
 /// Bytes of the program itself, its threads and what it reads into.
 pub(super) const BASE_BYTES: f64 = 11e6;
@@ -55,6 +58,10 @@ const THICKENED: Rates =
 
 /// The band of an offset is this much wider than its radius, h.
 const OFFSET_MARGIN: f64 = 4.0;
+
+/// Bytes per triangle of shells that stay as they are, at the peak: it is there in the file, in the soup, in the trees of the searches for
+/// contacts, and in the file that is written.
+const STANDING_BYTES: f64 = 600.0;
 
 /// Seconds on one core per h² of surface, fit included, and per input triangle.
 const SECONDS_PER_CELL: f64 = 22e-6;
@@ -114,8 +121,42 @@ pub fn plan_thicken(input: &TriMesh, options: &ThickenOptions) -> Result<Plan, E
 }
 
 fn plan_with(operands: &[TriMesh], options: &Options, offsets: Offsets) -> Result<Plan, Error> {
-    let lattice = prepare::lattice(&prepare::bounds(operands)?, options.voxel)?;
-    Ok(Input::surveyed(operands).cost(&lattice, options, offsets))
+    let operands = &*Frame::of(operands).local(operands);
+    let bounds = prepare::bounds(operands)?;
+    if offsets != Offsets::default() {
+        return Ok(Input::surveyed(operands).cost(&prepare::lattice(&bounds, options.voxel)?, options, offsets));
+    }
+    let h = prepare::spacing(&bounds, options.voxel)?;
+    let rest = rest(operands, options)?;
+    let standing = Input::of(operands).triangles - rest.triangles.len();
+    let Some(bounds) = rest.bounds() else { return Ok(Plan::of_standing(h, standing)) };
+    let lattice = prepare::lattice(&bounds, VoxelSize::Length(h))?;
+    let plan = Input::surveyed(std::slice::from_ref(&rest)).cost(&lattice, options, offsets);
+    let memory = plan.memory + (STANDING_BYTES * standing as f64) as u64;
+    Ok(Plan { triangles: plan.triangles + standing as u64, memory, ..plan })
+}
+
+/// What needs voxels of the operands: all but the shells that stand as they are, or are left out.
+fn rest(operands: &[TriMesh], options: &Options) -> Result<TriMesh, Error> {
+    let progress = Progress::none();
+    let soup = prepare::prepare(operands, options.orient, &progress)?;
+    // Which shells stand does not depend on the expression, only what becomes of them does.
+    let apart = Apart::find(&soup, &Expression::union(operands.len()), options, &progress)?;
+    Ok(apart.rest(&soup).mesh)
+}
+
+impl Plan {
+    /// For shells that stand as they are, without a lattice.
+    fn of_standing(h: f64, triangles: usize) -> Self {
+        Self {
+            voxel: h,
+            dims: [0; 3],
+            voxels_near_surface: 0,
+            triangles: triangles as u64,
+            memory: (BASE_BYTES + STANDING_BYTES * triangles as f64) as u64,
+            seconds: SECONDS_PER_TRIANGLE * triangles as f64,
+        }
+    }
 }
 
 /// An error when the run would need more memory than allowed, or more than 32 bits to number things.
@@ -296,7 +337,6 @@ pub(super) fn area(mesh: &TriMesh) -> f64 {
 mod tests {
     use super::*;
     use crate::morphology::Operation;
-    use crate::pipeline::VoxelSize;
     use glam::DVec3;
 
     /// `copies` of one triangle of area ½.
