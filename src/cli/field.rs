@@ -34,7 +34,7 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     let texts = Texts::parse(args, &files)?;
     let paths: Vec<&Path> = files.iter().map(|(_, path)| *path).collect();
     let targets = targets(args, &paths)?;
-    let mut given = report.timed("read", |_| Given::read(&paths, &args.reading, session))?;
+    let mut given = report.timed("read", |report| Given::read(&paths, &args.reading, session, &mut report.warnings))?;
     let of_grids = given.grids.iter().find_map(|grid| grid.file.unit);
     let unit = input::common_unit(&mut given.meshes, &args.reading, &mut report.warnings).or(of_grids);
     given.describe(report);
@@ -410,9 +410,6 @@ fn say(session: &Session, report: &RunReport, frames: usize, unit: Option<Unit>)
         rows.extend(summary::stages(report));
     }
     session.say(summary::table(&rows).trim_end());
-    for warning in &report.warnings {
-        session.say(&format!("note: {warning}"));
-    }
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::args::InputArgs;
 use super::exit::Failure;
 use super::input::{self, Input, is_stream};
+use super::negative;
 use super::report::RunReport;
 use super::session::Session;
 use super::slice::{self, GridInput};
@@ -32,7 +33,12 @@ pub enum Which {
 
 impl Given {
     /// Reads every path; a grid is known by its content.
-    pub fn read(paths: &[&Path], args: &InputArgs, session: &Session) -> Result<Self, Failure> {
+    pub fn read(
+        paths: &[&Path],
+        args: &InputArgs,
+        session: &Session,
+        notes: &mut Vec<String>,
+    ) -> Result<Self, Failure> {
         input::check_streams(paths)?;
         session.progress.stage("read")?;
         let mut inputs = Self { meshes: Vec::new(), grids: Vec::new(), order: Vec::new() };
@@ -40,10 +46,12 @@ impl Given {
             let bytes = input::bytes_of(path, session)?;
             if is_grid(&bytes, path, args) {
                 inputs.order.push(Which::Grid(inputs.grids.len()));
-                inputs.grids.push(slice::grid_of(path, &bytes)?);
+                inputs.grids.push(slice::grid_of(path, &bytes, notes)?);
             } else {
                 inputs.order.push(Which::Mesh(inputs.meshes.len()));
-                inputs.meshes.push(input::mesh_of(path, &bytes, args, session)?);
+                let mut mesh = input::mesh_of(path, &bytes, args, session, notes)?;
+                negative::leave_out(&mut mesh, notes);
+                inputs.meshes.push(mesh);
             }
         }
         Ok(inputs)
@@ -56,8 +64,6 @@ impl Given {
             Which::Grid(n) => self.grids[n].entry.clone(),
         };
         report.inputs = self.order.iter().map(entry).collect();
-        let notes = self.grids.iter().flat_map(|grid| &grid.file.warnings).cloned();
-        report.warnings.extend(notes);
         let nowhere = self.grids.iter().filter(|grid| !grid.file.format.says_where());
         report.warnings.extend(nowhere.map(|grid| {
             let (path, format) = (&grid.entry.path, &grid.entry.format);

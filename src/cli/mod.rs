@@ -19,6 +19,7 @@ mod inspect;
 mod length;
 mod limits;
 mod morphology;
+mod negative;
 mod output;
 mod progress_bar;
 mod render;
@@ -160,6 +161,8 @@ fn run(
     let mut report = RunReport::new(verb);
     let outcome = work(&session, &mut report);
     session.clear_bar();
+    // Here alone, so that no verb can keep a warning to itself, nor a run that fails.
+    report.warnings.iter().for_each(|warning| session.say(&format!("note: {warning}")));
     report.close(&outcome, session.start);
     let emitted = report.emit(common);
     let exit = match (&outcome, &emitted) {

@@ -21,7 +21,8 @@ use crate::picture::{EdgeDrawing, Image, Painted, RenderOptions, View, render, r
 pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let paths: Vec<&Path> = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
     check_overwrite(&args.output, args.force, &paths)?;
-    let mut inputs = report.timed("read", |_| Given::read(&paths, &args.reading, session))?;
+    let mut inputs =
+        report.timed("read", |report| Given::read(&paths, &args.reading, session, &mut report.warnings))?;
     // Two meshes share one camera, so they must share one unit.
     input::common_unit(&mut inputs.meshes, &args.reading, &mut report.warnings);
     inputs.describe(report);
@@ -52,9 +53,6 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
     }
     for slice in &report.slices {
         session.say(&slice.words(inputs.0.unit_of(&slice.path).as_deref()));
-    }
-    for warning in &report.warnings {
-        session.say(&format!("note: {warning}"));
     }
     report.output = Some(OutputEntry {
         path: label,

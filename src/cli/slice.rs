@@ -119,17 +119,20 @@ pub struct GridInput {
 }
 
 /// The grid in the bytes of a path.
-pub fn grid_of(path: &Path, bytes: &[u8]) -> Result<GridInput, Failure> {
+pub fn grid_of(path: &Path, bytes: &[u8], notes: &mut Vec<String>) -> Result<GridInput, Failure> {
     let name = (!input::is_stream(path)).then_some(path);
     let file = read_grid_bytes(bytes, None, name).map_err(|error| Failure::input(error.to_string()))?;
+    let label = input::label(path);
+    notes.extend(file.warnings.iter().map(|warning| format!("{label}: {warning}")));
     let entry = InputEntry {
-        path: input::label(path),
+        path: label,
         name: None,
         format: file.format.to_string(),
         bytes: bytes.len() as u64,
         sha256: input::sha256(bytes),
         unit: file.unit.map(|unit| unit.to_string()),
         parts: Vec::new(),
+        negative_parts: Vec::new(),
         warnings: file.warnings.clone(),
         validity: None,
     };
