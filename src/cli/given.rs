@@ -36,6 +36,7 @@ impl Given {
     pub fn read(
         paths: &[&Path],
         args: &InputArgs,
+        max_memory: Option<u64>,
         session: &Session,
         notes: &mut Vec<String>,
     ) -> Result<Self, Failure> {
@@ -46,7 +47,8 @@ impl Given {
             let bytes = input::bytes_of(path, session)?;
             if is_grid(&bytes, path, args) {
                 inputs.order.push(Which::Grid(inputs.grids.len()));
-                inputs.grids.push(slice::grid_of(path, &bytes, notes)?);
+                let left = max_memory.map(|cap| cap.saturating_sub(inputs.held()));
+                inputs.grids.push(slice::grid_of(path, &bytes, left, notes)?);
             } else {
                 inputs.order.push(Which::Mesh(inputs.meshes.len()));
                 let mut mesh = input::mesh_of(path, &bytes, args, session, notes)?;
@@ -55,6 +57,11 @@ impl Given {
             }
         }
         Ok(inputs)
+    }
+
+    /// Memory that the values of the grids take, bytes.
+    pub fn held(&self) -> u64 {
+        self.grids.iter().map(|grid| grid.file.values.memory()).sum()
     }
 
     /// Fills in what the report says of the inputs.

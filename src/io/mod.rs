@@ -52,7 +52,7 @@ pub use format::{Format, UnknownFormat};
 pub use grids::{
     BLOCK_SIDE, BLOCK_VOXELS, Block, BlockValues, DistanceSamples, GridFile, GridFormat, GridReadError,
     GridReadProblem, GridValues, SampleBlocks, SparseValues, Tile, UnknownGridFormat, encode_grid, read_grid,
-    read_grid_bytes, write_grid,
+    read_grid_bytes, read_grid_within, write_grid,
 };
 pub use ply::{VertexMap, encode_vertex_map};
 pub use save::save_bytes;
@@ -154,7 +154,7 @@ pub fn read_bytes(bytes: &[u8], format: Option<Format>, path: Option<&Path>) -> 
         Some(Format::Gltf) => gltf::read_json(bytes, path),
         Some(Format::ThreeMf) => three_mf::read(bytes),
     };
-    loaded.map_err(|error| match format.and_then(|_| foreign()) {
+    loaded.map_err(|error| match format.and_then(|_| foreign::recognise(bytes, None)) {
         Some(problem) => ReadError::from(problem).in_file(path, found),
         None => error.in_file(path, found),
     })
