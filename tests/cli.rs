@@ -6,6 +6,8 @@ mod compare;
 mod fields;
 #[path = "cli/files.rs"]
 mod files;
+#[path = "cli/readers.rs"]
+mod readers;
 #[path = "cli/sdf.rs"]
 mod sdf;
 #[path = "cli/slices.rs"]

@@ -19,10 +19,11 @@ pub(super) struct Cap {
 }
 
 impl Cap {
-    /// Refuses what would take `bytes` beside the file, by what is allowed and by what the file's length justifies.
-    pub(super) fn check(self, bytes: usize) -> Result<(), GridReadProblem> {
+    /// Refuses values of so many `bytes`, by what the file's length justifies; and by what is allowed those, the file, and
+    /// the bytes `besides` that are held while it is read.
+    pub(super) fn check(self, bytes: usize, besides: usize) -> Result<(), GridReadProblem> {
         let limit = ALWAYS_ALLOWED.max(self.length.saturating_mul(LARGEST_RATIO));
-        let needed = self.length.saturating_add(bytes) as u64;
+        let needed = self.length.saturating_add(bytes).saturating_add(besides) as u64;
         match self.allowed {
             Some(allowed) if needed > allowed => Err(GridReadProblem::Memory { needed, allowed }),
             _ if bytes > limit => {
@@ -32,9 +33,9 @@ impl Cap {
         }
     }
 
-    /// The same for `count` values, and for `more` bytes that are held besides.
-    pub(super) fn check_values(self, count: usize, more: usize) -> Result<(), GridReadProblem> {
-        self.check(count.saturating_mul(size_of::<f32>()).saturating_add(more))
+    /// The same for `count` values.
+    pub(super) fn check_values(self, count: usize, besides: usize) -> Result<(), GridReadProblem> {
+        self.check(count.saturating_mul(size_of::<f32>()), besides)
     }
 }
 

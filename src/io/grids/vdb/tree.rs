@@ -49,7 +49,7 @@ impl Tree {
         // A block, its values, and what keeping them apart costs.
         const LEAF: usize = size_of::<Block>() + size_of::<BlockValues>() + 48;
         let room = self.leaves.len().saturating_mul(LEAF).saturating_add(self.tiles.len() * size_of::<Tile>());
-        self.cap.check(room).map_err(|problem| problem.at_byte(cursor.at()))
+        self.cap.check(room, 0).map_err(|problem| problem.at_byte(cursor.at()))
     }
 
     fn root(&mut self, cursor: &mut Cursor<'_>) -> Result<(), GridReadError> {

@@ -80,31 +80,29 @@ impl Storage {
         };
         let size = count.checked_mul(kind.width()).ok_or_else(|| wrong("fewer numbers", None))?;
         let source = Source { data, base64 };
-        // The bytes and the numbers that are made of them.
-        let room = size.saturating_add(count.saturating_mul(size_of::<f32>()));
-        let bytes = if self.zlib { self.unzip(source, size, room) } else { self.plain(source, size, room) };
+        let bytes = if self.zlib { self.unzip(source, size, count) } else { self.plain(source, size, count) };
         Ok(kind.decode(&bytes.map_err(|e| e.at_byte(byte))?, self.big))
     }
 
-    /// The length in bytes, then the bytes. `room` is what they and their numbers take.
-    fn plain(&self, source: Source<'_>, size: usize, room: usize) -> Result<Vec<u8>, GridReadProblem> {
+    /// The length in bytes, then the bytes.
+    fn plain(&self, source: Source<'_>, size: usize, count: usize) -> Result<Vec<u8>, GridReadProblem> {
         let whole = size.checked_add(self.word);
         let whole = whole.ok_or_else(|| GridReadProblem::truncated(format!("{size} bytes"), "there are fewer"))?;
         self.check_size(self.count(&source.take(0, self.word)?, 0), size)?;
-        self.cap.check(room)?;
+        self.cap.check_values(count, size)?;
         let mut bytes = source.take(0, whole)?;
         bytes.drain(..self.word);
         Ok(bytes)
     }
 
     /// The number of blocks, the size of a whole one and of the last, the packed size of each, and then the blocks.
-    fn unzip(&self, source: Source<'_>, size: usize, room: usize) -> Result<Vec<u8>, GridReadProblem> {
+    fn unzip(&self, source: Source<'_>, size: usize, count: usize) -> Result<Vec<u8>, GridReadProblem> {
         let start = source.take(0, 3 * self.word)?;
         let [blocks, whole, last] = [0, 1, 2].map(|n| self.count(&start, n));
         let partial = u64::from(last > 0);
         let total = blocks.checked_sub(partial).and_then(|n| n.checked_mul(whole)).and_then(|n| n.checked_add(last));
         self.check_size(total.unwrap_or(u64::MAX), size)?;
-        self.cap.check(room)?;
+        self.cap.check_values(count, size)?;
         let sizes = usize::try_from(blocks).ok().and_then(|blocks| blocks.checked_add(3)?.checked_mul(self.word));
         let many = || GridReadProblem::truncated(format!("{blocks} packed blocks"), "there are fewer");
         let header = source.take(0, sizes.ok_or_else(many)?)?;
