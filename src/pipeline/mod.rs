@@ -6,6 +6,7 @@ mod colours;
 mod distance;
 mod field;
 mod morphology;
+mod order;
 mod plan;
 mod prepare;
 mod refine;
@@ -227,7 +228,8 @@ pub fn repair(input: &TriMesh, options: &Options, progress: &Progress) -> Result
     boolean(std::slice::from_ref(input), &Expression::Operand(0), options, progress)
 }
 
-/// Evaluates a boolean expression over operands, each of which may be broken.
+/// Evaluates a boolean expression over operands, each of which may be broken. The order of the operands does not matter:
+/// what says the same has the same result.
 pub fn boolean(
     operands: &[TriMesh],
     expression: &Expression,
@@ -238,6 +240,18 @@ pub fn boolean(
     if needed > operands.len() {
         return Err(Error::MissingOperand { operand: needed - 1, given: operands.len() });
     }
+    order::in_order(operands, expression, options, |operands, expression, options| {
+        evaluate(operands, expression, options, progress)
+    })
+}
+
+/// [`boolean`] for operands in their order.
+fn evaluate(
+    operands: &[TriMesh],
+    expression: &Expression,
+    options: &Options,
+    progress: &Progress,
+) -> Result<Outcome, Error> {
     let lattice = prepare::lattice(&prepare::bounds(operands)?, options.voxel)?;
     plan::check_limits(operands, &lattice, options, plan::Offsets::default())?;
     let mut stages = stages::Stages::new(progress);

@@ -19,7 +19,7 @@ fn problem(bytes: impl AsRef<[u8]>, name: &str) -> ReadProblem {
 }
 
 fn volume(mesh: &TriMesh) -> f64 {
-    corners(mesh).iter().map(|[a, b, c]| a.dot(b.cross(*c)) / 6.0).sum()
+    corners(mesh).iter().map(|[a, b, c]| a.dot(b.cross(*c))).sum::<f64>() / 6.0
 }
 
 // Places that are no places.

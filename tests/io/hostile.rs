@@ -117,7 +117,8 @@ fn off_that_lies() {
     // A number is missing: what follows is told from numbers that go on in the next line.
     assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", 5), ReadProblem::Syntax { .. });
     assert_is!(at("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n2 0 1 2\n", 7), ReadProblem::Syntax { .. });
-    assert_is!(at("OFF\n3 1 0\n0 0 0 x 0 0\n1 0 0\n", 4), ReadProblem::Truncated { .. });
+    assert_is!(at("OFF\n3 1 0\n0 0 0 x 0 0\n1 0 0\n", 3), ReadProblem::Syntax { .. });
+    assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0 0 0 1\n", 4), ReadProblem::Truncated { .. });
     assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", 6), ReadProblem::IndexOutOfRange { .. });
     assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", 6), ReadProblem::IndexOutOfRange { .. });
     assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4000000000 0 1 2\n", 6), ReadProblem::Truncated { .. });

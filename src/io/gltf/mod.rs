@@ -25,7 +25,7 @@ const JSON_CHUNK: &[u8] = b"JSON";
 const BINARY_CHUNK: &[u8] = b"BIN\0";
 
 /// Extensions that are read.
-const READ: [&str; 3] = [instancing::NAME, "KHR_mesh_quantization", "KHR_materials_unlit"];
+const READ: [&str; 2] = [instancing::NAME, "KHR_mesh_quantization"];
 /// Extensions that begin so say how a surface looks and leave its shape alone.
 const OF_LOOKS: [&str; 7] =
     ["KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_", "EXT_lights_", "MSFT_texture_", "EXT_materials_"];

@@ -240,8 +240,11 @@ impl Reader<'_, '_> {
             return Err(too_many_vertices());
         }
         self.soup.positions.reserve(points.len());
+        // Multiplied by one, −0 would become 0.
+        let in_place = *place == DMat4::IDENTITY;
         for &point in &points {
-            self.soup.positions.push(place.transform_point3(DVec3::from(point)));
+            let point = DVec3::from(point);
+            self.soup.positions.push(if in_place { point } else { place.transform_point3(point) });
         }
         Ok((first as u32, points.len()))
     }

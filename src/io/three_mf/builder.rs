@@ -283,10 +283,12 @@ fn add_mesh(
     let mut wanted = vec![numbers.len() == object.triangles.len(); object.vertices.len()];
     numbers.iter().flat_map(|&t| object.triangles[t]).for_each(|v| wanted[v as usize] = true);
     let mut places = Vec::with_capacity(wanted.len());
+    // Multiplied by one, −0 would become 0.
+    let in_place = *transform == DAffine3::IDENTITY;
     for (&vertex, &wanted) in object.vertices.iter().zip(&wanted) {
         places.push(soup.positions.len() as u32);
         if wanted {
-            soup.positions.push(transform.transform_point3(vertex));
+            soup.positions.push(if in_place { vertex } else { transform.transform_point3(vertex) });
         }
     }
     let mirrored = is_mirroring(transform);
