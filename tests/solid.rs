@@ -246,3 +246,27 @@ fn reports_and_errors_name_operands_in_the_order_given() {
     let failed = boolean(&[low, flat], &Expression::union(2), &options(24), &Progress::none());
     assert!(matches!(failed, Err(Error::Empty { operand: 1 })), "{failed:?}");
 }
+
+/// Formats number vertices in their own way: as the file has them, by first use, or one for each corner.
+#[test]
+fn the_numbers_of_vertices_do_not_matter() {
+    let mut mesh = torus(20, 10);
+    mesh.append(&cuboid(DVec3::splat(-0.3), DVec3::new(1.2, 0.3, 0.3)));
+    mesh.triangles.remove(7);
+    let corners = |mesh: &TriMesh| (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect::<Vec<_>>();
+    let apart = TriMesh {
+        positions: corners(&mesh).into_iter().flatten().collect(),
+        triangles: (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
+    };
+    let last = mesh.positions.len() as u32 - 1;
+    let backwards = TriMesh {
+        positions: mesh.positions.iter().rev().copied().collect(),
+        triangles: mesh.triangles.iter().map(|t| t.map(|v| last - v)).collect(),
+    };
+    let (plain, _) = repaired(&mesh, 24);
+    for other in [mesh.welded(), apart, backwards] {
+        let (found, _) = repaired(&other, 24);
+        assert_eq!(corners(&found.mesh), corners(&plain.mesh));
+        assert_eq!(found.sources, plain.sources);
+    }
+}
