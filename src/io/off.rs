@@ -171,15 +171,13 @@ fn header(stream: &mut Stream<'_>) -> Result<([usize; 2], Option<Extras>), ReadE
     let vertices = stream.count(first)?;
     let faces = stream.next();
     let faces = stream.count(faces)?;
-    if stream.rest_of_line().is_empty() {
-        // A line of one whole number is that of the edges; a vertex has three.
-        let mut ahead = stream.lines.clone();
-        let mut words = ahead.next_content().map_or(Words::new(b""), |(_, line)| Words::new(line));
-        let alone = words.next().and_then(integer).is_some() && words.next().is_none();
-        let several = |(_, line)| Words::new(line).nth(1).is_some();
-        if alone && ahead.clone().next_content().is_some_and(several) {
-            stream.lines = ahead;
-        }
+    // The number of edges follows, as the format asks, or the first vertex does.
+    let next_line = || stream.lines.clone().next_content().map_or(b"".as_slice(), |(_, line)| line);
+    match stream.words.rest() {
+        b"" if Words::new(next_line()).nth(2).is_some() => {}
+        b"" => drop(stream.next()),
+        _ if stream.has_lines(vertices) => drop(stream.rest_of_line()),
+        _ => drop(stream.next()),
     }
     Ok(([vertices, faces], extras))
 }

@@ -353,10 +353,8 @@ fn three_mf_that_unfolds_without_end() {
     // Deeper than anybody builds, and no circle.
     let chain: String = (2..20_000).map(|id| components(id, &[id - 1])).collect();
     let deep = file(format!(r#"<object id="1">{TRIANGLE}</object>{chain}"#), 19_999);
-    assert_is!(
-        *read_bytes(&deep, None, None).unwrap_err().problem,
-        ReadProblem::TooLarge { what: "components within components", .. }
-    );
+    let error = read_bytes(&deep, None, None).unwrap_err();
+    assert!(error.to_string().contains("more than 256 deep"), "{error}");
     // Two of two of two …, of a triangle or of nothing.
     for leaf in [TRIANGLE, ""] {
         let doubling: String = (2..60).map(|id| components(id, &[id - 1, id - 1])).collect();

@@ -96,8 +96,9 @@ impl<'a> Builder<'a> {
                 return Err(self.fail(open.model, open.object, problem));
             }
             if stack.len() == DEEPEST {
-                let problem = ReadProblem::TooLarge { what: "components within components", limit: DEEPEST as u64 };
-                return Err(self.fail(open.model, open.object, problem));
+                let reason =
+                    format!("components within components more than {DEEPEST} deep are not read; flatten the assembly");
+                return Err(self.fail(open.model, open.object, ReadProblem::Unsupported(reason)));
             }
             stack.push(open);
         }
