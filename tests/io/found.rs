@@ -4,6 +4,7 @@ use glam::DVec3;
 use meshwright::io::{Colours, Format, Loaded, ReadProblem, WriteOptions, read, read_bytes};
 use meshwright::mesh::TriMesh;
 
+use crate::memory::peak_of;
 use crate::support::{assert_sound, corners, encoded, encoded_in_colour, every_form, tetrahedron, zipped};
 
 #[track_caller]
@@ -300,6 +301,17 @@ fn instances_are_placed() {
     let numbers = floats(&[0.0; 6]);
     let lie = instanced(r#""TRANSLATION":1,"SCALE":2"#, &accessors.join(","), &numbers, "");
     assert!(matches!(problem(lie, "a.gltf"), ReadProblem::Syntax { .. }));
+}
+
+/// As many instances as a number can say, of nothing.
+#[test]
+fn instances_without_end_are_refused() {
+    let count = 4_000_000;
+    let accessor = format!(r#"{{"componentType":5126,"count":{count},"type":"VEC3"}}"#);
+    let lie = instanced(r#""TRANSLATION":1"#, &accessor, &[0; 4], "");
+    let (result, peak) = peak_of(|| read_bytes(&lie, None, None));
+    assert!(matches!(*result.unwrap_err().problem, ReadProblem::TooLarge { .. }));
+    assert!(peak < 400 << 20, "{peak}");
 }
 
 #[test]

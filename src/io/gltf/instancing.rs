@@ -65,14 +65,14 @@ impl Instancing {
         Ok(Self(attributes.collect()))
     }
 
-    /// The transforms of the copies of the mesh of `node`, relative to the node; `None` where it places its mesh once.
-    pub(super) fn places(
+    /// The copies of the mesh of `node`; `None` where it places its mesh once.
+    pub(super) fn of(
         &self,
         node: usize,
         root: &Root,
         buffers: &Buffers<'_>,
         allowance: &mut Expansion,
-    ) -> Result<Option<Vec<DMat4>>, ReadError> {
+    ) -> Result<Option<Copies>, ReadError> {
         let Some(attributes) = self.0.get(&node) else { return Ok(None) };
         let mut values = |index: Option<u32>, width: usize| {
             index.map(|index| accessor::instance_values(root, buffers, Index::new(index), width, allowance)).transpose()
@@ -80,21 +80,35 @@ impl Instancing {
         let translations = values(attributes.translation, 3)?;
         let rotations = values(attributes.rotation, 4)?;
         let scales = values(attributes.scale, 3)?;
-        let mut counts = [&translations, &rotations, &scales].into_iter().flatten().map(Vec::len);
-        let count = counts.next().unwrap_or_default();
-        if let Some(other) = counts.find(|other| *other != count) {
+        let counts: Vec<usize> = [&translations, &rotations, &scales].into_iter().flatten().map(Vec::len).collect();
+        let count = counts.first().copied().unwrap_or_default();
+        if let Some(other) = counts.iter().find(|other| **other != count) {
             let problem = ReadProblem::syntax(format!("{count} values of each kind for {NAME}"), other.to_string());
             return Err(ReadError::item(format!("nodes[{node}]"), problem));
         }
+        Ok(Some(Copies { translations, rotations, scales, count }))
+    }
+}
+
+/// Copies of a mesh: the lists that are there have as many values as there are copies.
+pub(super) struct Copies {
+    translations: Option<Vec<[f64; 4]>>,
+    rotations: Option<Vec<[f64; 4]>>,
+    scales: Option<Vec<[f64; 4]>>,
+    count: usize,
+}
+
+impl Copies {
+    /// The transforms of the copies, relative to the node.
+    pub(super) fn places(&self) -> impl Iterator<Item = DMat4> {
         let at = |list: &Option<Vec<[f64; 4]>>, n: usize| list.as_ref().map(|list| DVec4::from(list[n]));
-        let place = |n: usize| {
-            let rotation = at(&rotations, n).filter(|q| q.length_squared() > 0.0 && q.is_finite());
+        (0..self.count).map(move |n| {
+            let rotation = at(&self.rotations, n).filter(|q| q.length_squared() > 0.0 && q.is_finite());
             DMat4::from_scale_rotation_translation(
-                at(&scales, n).map_or(DVec3::ONE, DVec4::truncate),
+                at(&self.scales, n).map_or(DVec3::ONE, DVec4::truncate),
                 rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_vec4(q.normalize())),
-                at(&translations, n).map_or(DVec3::ZERO, DVec4::truncate),
+                at(&self.translations, n).map_or(DVec3::ZERO, DVec4::truncate),
             )
-        };
-        Ok(Some((0..count).map(place).collect()))
+        })
     }
 }

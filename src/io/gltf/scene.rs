@@ -111,8 +111,8 @@ impl Reader<'_, '_> {
             if let Some(mesh) = node.mesh {
                 self.posed += usize::from(node.skin.is_some());
                 let name = node.name.as_deref().unwrap_or_default();
-                match self.instancing.places(i, self.root, self.buffers, self.allowance)? {
-                    Some(copies) => copies.iter().try_for_each(|copy| self.mesh(mesh, name, &(place * *copy)))?,
+                match self.instancing.of(i, self.root, self.buffers, self.allowance)? {
+                    Some(copies) => copies.places().try_for_each(|copy| self.mesh(mesh, name, &(place * copy)))?,
                     None => self.mesh(mesh, name, &place)?,
                 }
             }
