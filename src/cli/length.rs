@@ -153,7 +153,7 @@ impl FromStr for Length {
 
 impl fmt::Display for Length {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::Plain(value) | Self::Unit(value, _) | Self::Voxels(value) | Self::Percent(value)) = *self;
+        let value = self.number();
         // Nobody counts three hundred zeros.
         if (1e-9..1e15).contains(&value) {
             write!(f, "{value}")?
@@ -169,12 +169,21 @@ impl fmt::Display for Length {
     }
 }
 
-/// Lengths in model units that may be meant; coordinates beyond the upper end are refused too.
+/// Numbers of a length that may be meant, in whatever unit; coordinates beyond the upper end are refused too.
 const MEANT: std::ops::RangeInclusive<f64> = 1e-30..=1e15;
 
 impl Length {
+    /// The number that was typed.
+    fn number(&self) -> f64 {
+        let (Self::Plain(value) | Self::Unit(value, _) | Self::Voxels(value) | Self::Percent(value)) = *self;
+        value
+    }
+
     /// The length in model units.
     pub fn resolve(&self, scale: &Scale) -> Result<f64, QuantityError> {
+        if !MEANT.contains(&self.number()) {
+            return Err(QuantityError::Absurd { length: self.to_string() });
+        }
         let length = match *self {
             Self::Plain(value) => value,
             Self::Percent(value) => value / 100.0 * scale.diagonal,
@@ -186,10 +195,10 @@ impl Length {
                 value * scale.voxel.ok_or_else(|| QuantityError::VoxelItself { length: self.to_string() })?
             }
         };
-        match length {
-            _ if MEANT.contains(&length) => Ok(length),
-            _ if length > 0.0 => Err(QuantityError::Absurd { length: self.to_string() }),
-            _ => Err(QuantityError::NotPositive { text: self.to_string() }),
+        if length.is_finite() && length > 0.0 {
+            Ok(length)
+        } else {
+            Err(QuantityError::NotPositive { text: self.to_string() })
         }
     }
 }
@@ -288,7 +297,7 @@ mod tests {
             assert_eq!(error, QuantityError::Absurd { length: text.into() }, "{text}");
         }
         let wide = Scale { diagonal: f64::MAX, ..SCALE };
-        assert!(matches!(length("1000%").resolve(&wide), Err(QuantityError::Absurd { .. })));
+        assert!(matches!(length("1000%").resolve(&wide), Err(QuantityError::NotPositive { .. })));
         assert!(length("1%").resolve(&Scale { diagonal: 0.0, ..SCALE }).is_err());
     }
 
