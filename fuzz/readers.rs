@@ -19,6 +19,10 @@ pub fn check(data: &[u8], format: Format) {
     assert!(mesh.triangles.iter().flatten().all(|&v| (v as usize) < mesh.positions.len()));
     assert!(!loaded.parts.is_empty());
     assert!(loaded.parts.iter().all(|p| p.triangles.start < p.triangles.end && p.triangles.end <= mesh.triangles.len()));
+    if let Some(negative) = &loaded.negative {
+        assert!(!negative.mesh.triangles.is_empty() && negative.mesh.positions.iter().all(|p| p.is_finite()));
+        assert!(negative.mesh.triangles.iter().flatten().all(|&v| (v as usize) < negative.mesh.positions.len()));
+    }
     // PLY holds doubles and the colours of vertices or faces, so nothing may change on the way.
     if mesh.triangles.len() < 10_000 {
         let mut bytes = Vec::new();
@@ -35,7 +39,7 @@ pub fn check(data: &[u8], format: Format) {
 }
 
 /// A 3MF package for `data`: itself, or, since a mutated zip rarely gets past its checksums, the
-/// data as the model in a sound package.
+/// data as the model, or as the settings of a slicer beside a model, in a sound package.
 pub fn packed(data: &[u8]) -> Vec<u8> {
     if data.starts_with(b"PK") {
         return data.to_vec();
@@ -43,7 +47,14 @@ pub fn packed(data: &[u8]) -> Vec<u8> {
     use std::io::Write;
     let options = zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
     let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-    let written = zip.start_file("3D/3dmodel.model", options).map_err(std::io::Error::from).and_then(|()| zip.write_all(data));
+    const MODEL: &[u8] = include_bytes!("seeds/three_mf/roles.model");
+    let files = match data.starts_with(b"<config") {
+        true => vec![("3D/3dmodel.model", MODEL), ("Metadata/model_settings.config", data)],
+        false => vec![("3D/3dmodel.model", data)],
+    };
+    let written = files.into_iter().try_for_each(|(name, content)| {
+        zip.start_file(name, options).map_err(std::io::Error::from).and_then(|()| zip.write_all(content))
+    });
     written.and_then(|()| Ok(zip.finish()?.into_inner())).unwrap_or_default()
 }
 

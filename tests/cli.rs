@@ -8,6 +8,8 @@ mod faults;
 mod fields;
 #[path = "cli/files.rs"]
 mod files;
+#[path = "cli/readers.rs"]
+mod readers;
 #[path = "cli/sdf.rs"]
 mod sdf;
 #[path = "cli/slices.rs"]

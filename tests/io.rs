@@ -5,6 +5,8 @@
 mod colours;
 #[path = "io/formats.rs"]
 mod formats;
+#[path = "io/found.rs"]
+mod found;
 #[path = "io/grid_forms.rs"]
 mod grid_forms;
 #[path = "io/grid_lies.rs"]

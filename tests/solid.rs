@@ -7,7 +7,7 @@ use glam::DVec3;
 use meshwright::ldi::Expression;
 use meshwright::mesh::{TriMesh, ValidateOptions, Validity, validate};
 use meshwright::orient::OrientMode;
-use meshwright::pipeline::{Error, Options, Outcome, VoxelSize, boolean, plan, repair};
+use meshwright::pipeline::{Error, Options, Outcome, TriangleSource, VoxelSize, boolean, plan, repair};
 use meshwright::progress::Progress;
 use proptest::prelude::*;
 
@@ -208,5 +208,76 @@ proptest! {
             let got = combined(&operands, &expression, 64).1.volume;
             prop_assert!((got - volume).abs() < 0.01 * volume.max(0.2), "{:?}: {} and {}", expression, got, volume);
         }
+    }
+}
+
+/// A box with corners at whole numbers, so that boxes often share planes, edges and corners.
+fn whole_box() -> impl Strategy<Value = TriMesh> {
+    (prop::array::uniform3(0i32..5), prop::array::uniform3(3i32..8)).prop_map(|(low, size)| {
+        let [low, size] = [low, size].map(|v| DVec3::from(v.map(f64::from)));
+        cuboid(low, low + size)
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
+
+    /// Also where their surfaces lie on each other, and either could leave its triangles.
+    #[test]
+    fn operands_may_be_given_in_any_order(a in whole_box(), b in whole_box(), c in whole_box()) {
+        let make = |operands: &[&TriMesh], expression: &Expression| {
+            let operands: Vec<TriMesh> = operands.iter().map(|mesh| (*mesh).clone()).collect();
+            boolean(&operands, expression, &options(20), &Progress::none()).map(|outcome| {
+                let name = |source: &TriangleSource| match *source {
+                    TriangleSource::Operand { operand, triangle } => operands[operand as usize].corners(triangle as usize).map(Some),
+                    TriangleSource::Closed => [None; 3],
+                };
+                let sources: Vec<_> = outcome.sources.iter().map(name).collect();
+                (outcome.mesh, sources)
+            })
+        };
+        let union = make(&[&a, &b, &c], &Expression::union(3));
+        prop_assert_eq!(&make(&[&c, &a, &b], &Expression::union(3)), &union);
+        prop_assert_eq!(&make(&[&b, &a, &c], &Expression::union(3)), &union);
+        let difference = make(&[&a, &b, &c], &Expression::difference(3));
+        prop_assert_eq!(&make(&[&a, &c, &b], &Expression::difference(3)), &difference);
+    }
+}
+
+#[test]
+fn reports_and_errors_name_operands_in_the_order_given() {
+    let (low, high) = (unit_box(DVec3::ZERO), turned_over(unit_box(DVec3::splat(0.5))));
+    for operands in [[low.clone(), high.clone()], [high.clone(), low.clone()]] {
+        let (outcome, _) = combined(&operands, &Expression::union(2), 24);
+        for (operand, report) in operands.iter().zip(&outcome.report.orient) {
+            assert_eq!(report.flipped_patches, usize::from(*operand == high));
+        }
+    }
+    let flat = TriMesh { positions: vec![DVec3::splat(-9.0); 3], triangles: vec![[0, 1, 2]] };
+    let failed = boolean(&[low, flat], &Expression::union(2), &options(24), &Progress::none());
+    assert!(matches!(failed, Err(Error::Empty { operand: 1 })), "{failed:?}");
+}
+
+/// Formats number vertices in their own way: as the file has them, by first use, or one for each corner.
+#[test]
+fn the_numbers_of_vertices_do_not_matter() {
+    let mut mesh = torus(20, 10);
+    mesh.append(&cuboid(DVec3::splat(-0.3), DVec3::new(1.2, 0.3, 0.3)));
+    mesh.triangles.remove(7);
+    let corners = |mesh: &TriMesh| (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect::<Vec<_>>();
+    let apart = TriMesh {
+        positions: corners(&mesh).into_iter().flatten().collect(),
+        triangles: (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
+    };
+    let last = mesh.positions.len() as u32 - 1;
+    let backwards = TriMesh {
+        positions: mesh.positions.iter().rev().copied().collect(),
+        triangles: mesh.triangles.iter().map(|t| t.map(|v| last - v)).collect(),
+    };
+    let (plain, _) = repaired(&mesh, 24);
+    for other in [mesh.welded(), apart, backwards] {
+        let (found, _) = repaired(&other, 24);
+        assert_eq!(corners(&found.mesh), corners(&plain.mesh));
+        assert_eq!(found.sources, plain.sources);
     }
 }

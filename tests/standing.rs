@@ -64,7 +64,8 @@ fn ball(centre: DVec3, radius: f64, rings: u32) -> TriMesh {
     for ring in 0..rings {
         for k in 0..around {
             let [a, b, c, d] = [at(ring, k), at(ring, k + 1), at(ring + 1, k + 1), at(ring + 1, k)];
-            mesh.triangles.extend([[a, b, c], [a, c, d]].iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]));
+            mesh.triangles
+                .extend([[a, b, c], [a, c, d]].iter().filter(|t| t[0] != t[1] && t[1] != t[2] && t[2] != t[0]));
         }
     }
     mesh
@@ -93,7 +94,8 @@ fn cubes(filled: &[bool], n: usize) -> TriMesh {
         }
     }
     let positions = quads.iter().flatten().copied().collect();
-    let triangles = (0..quads.len() as u32).flat_map(|q| [[4 * q, 4 * q + 1, 4 * q + 2], [4 * q, 4 * q + 2, 4 * q + 3]]);
+    let triangles =
+        (0..quads.len() as u32).flat_map(|q| [[4 * q, 4 * q + 1, 4 * q + 2], [4 * q, 4 * q + 2, 4 * q + 3]]);
     TriMesh { positions, triangles: triangles.collect() }.welded()
 }
 
@@ -205,9 +207,8 @@ fn a_broken_link_changes_nothing_of_the_others_and_keeps_its_own_triangles() {
         let outcome = repaired(&broken, &at(96));
         assert_eq!(judged(&outcome.mesh).bodies, 4);
         assert_eq!(outcome.report.standing.shells, 3);
-        let given: std::collections::HashSet<_> = (0..whole.triangles.len())
-            .map(|t| whole.corners(t).map(|p| p.to_array().map(f64::to_bits)))
-            .collect();
+        let given: std::collections::HashSet<_> =
+            (0..whole.triangles.len()).map(|t| whole.corners(t).map(|p| p.to_array().map(f64::to_bits))).collect();
         let same = (0..outcome.mesh.triangles.len())
             .filter(|&t| given.contains(&outcome.mesh.corners(t).map(|p| p.to_array().map(f64::to_bits))))
             .count();

@@ -371,6 +371,9 @@ pub struct RenderArgs {
     /// Do not colour defects
     #[arg(long)]
     pub no_defects: bool,
+    /// Refuse grids that would take more memory (500M, 2G)
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    pub max_memory: Option<u64>,
     /// Write over an input file
     #[arg(long)]
     pub force: bool,

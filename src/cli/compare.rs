@@ -22,12 +22,10 @@ pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Res
     if let Some(map) = &args.map {
         check_map(map)?;
     }
-    let mut inputs = report.timed("read", |_| input::read_all(&paths, &args.reading, session))?;
+    let mut inputs =
+        report.timed("read", |report| input::read_all(&paths, &args.reading, session, &mut report.warnings))?;
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
-    for input in &inputs {
-        report.warnings.extend(input.loaded.warnings.iter().cloned());
-    }
     let [a, b] = inputs.as_slice() else { return Err(Failure::internal("two meshes were wanted")) };
     let limits = Limits::of(args, a, unit)?;
     report.options = json!({
@@ -48,10 +46,7 @@ pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Res
     session.clear_bar();
     let name = unit.map(|unit| unit.to_string());
     if !args.common.json {
-        let mut text = summary::table(&rows(&found, [&a.label, &b.label], name.as_deref()));
-        for warning in &report.warnings {
-            text.push_str(&format!("note: {warning}\n"));
-        }
+        let text = summary::table(&rows(&found, [&a.label, &b.label], name.as_deref()));
         output::write_stream(text.as_bytes())?;
     }
     match (limits.largest, found.symmetric) {

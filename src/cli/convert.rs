@@ -15,7 +15,8 @@ use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
 /// Reads one file and writes it again.
 pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let mut target = Target::new(&args.output, &args.writing)?;
-    let mut inputs = report.timed("read", |_| input::read_all(&[&args.input], &args.reading, session))?;
+    let mut inputs =
+        report.timed("read", |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     target.set_unit(unit);
     report.options = json!({
@@ -25,7 +26,6 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     });
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     let Some(input) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
-    report.warnings.extend(input.loaded.warnings.iter().cloned());
     if input.loaded.parts.len() > 1 {
         report.warnings.push(format!("the {} objects of the input become one", input.loaded.parts.len()));
     }
@@ -52,9 +52,6 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
         target.options.format,
         unit.map_or(String::new(), |unit| format!(", in {unit}"))
     ));
-    for warning in &report.warnings {
-        session.say(&format!("note: {warning}"));
-    }
     Ok(if lost.is_empty() { Exit::Done } else { Exit::Limit })
 }
 

@@ -24,7 +24,11 @@ pub fn changes(topology: &TopologyReport) -> Vec<String> {
         n => parts.push(format!("{} {many}", words::count(n))),
     };
     add(topology.lost_count, "1 body is gone", "bodies are gone");
-    add(topology.fused, "2 bodies that do not touch came out as one", "bodies came out joined with others that they do not touch");
+    add(
+        topology.fused,
+        "2 bodies that do not touch came out as one",
+        "bodies came out joined with others that they do not touch",
+    );
     add(topology.parted - topology.crumbs, "1 piece came off a body", "pieces came off bodies");
     add(topology.crumbs, "1 crumb was made beside a body", "crumbs were made beside bodies");
     let tunnels = topology.new_tunnels.unwrap_or(0).max(0) as usize;

@@ -21,7 +21,7 @@ use super::{limits, machine, sdf, solid};
 use crate::field::Sampled;
 use crate::field::language::{self, LanguageError, Node, Value};
 use crate::fit::FitOptions;
-use crate::io::{Colours, Format, GridFormat, Unit, WriteOptions};
+use crate::io::{Colours, Format, GridFormat, GridValues, Unit, WriteOptions};
 use crate::mesh::Bounds;
 use crate::picture::ramp_colour;
 use crate::pipeline::{self, Built, FieldBand, FieldBuilder, FieldReport, Operand, Options, VoxelSize};
@@ -35,7 +35,8 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     let texts = Texts::parse(args, &files)?;
     let paths: Vec<&Path> = files.iter().map(|(_, path)| *path).collect();
     let targets = targets(args)?;
-    let mut given = report.timed("read", |_| Given::read(&paths, &args.reading, session))?;
+    let mut given = report
+        .timed("read", |report| Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings))?;
     let of_grids = given.grids.iter().find_map(|grid| grid.file.unit);
     let unit = input::common_unit(&mut given.meshes, &args.reading, &mut report.warnings).or(of_grids);
     given.describe(report);
@@ -51,10 +52,11 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
         }
         Ok::<(), Failure>(())
     })?;
-    let operands = operands(&given, unit, &mut report.warnings);
+    let operands = operands(&mut given, unit, args.max_memory, &mut report.warnings)?;
+    let held: u64 = operands.iter().map(Operand::memory).sum();
     let bounds = operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
     let scale = scale(args, unit, bounds.as_ref())?;
-    let options = options(args, &scale, &given)?;
+    let options = options(args, &scale, &given, held)?;
     report.options = resolved(args, unit, &options, &scale);
     let mut run = Run {
         args,
@@ -62,6 +64,7 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
         scale: &scale,
         given: &given,
         options: &options,
+        held,
         session,
         builder: FieldBuilder::new(&operands, &options, &session.progress),
     };
@@ -77,24 +80,44 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
 }
 
-/// The operands of the expression. Lattices in another unit than the rest are rescaled, with a line about it.
-fn operands(given: &Given, unit: Option<Unit>, notes: &mut Vec<String>) -> Vec<Operand> {
-    let mut operand = |which: &Which| match *which {
-        Which::Mesh(n) => Operand::Mesh(given.meshes[n].loaded.mesh.clone()),
-        Which::Grid(n) => {
-            let grid = &given.grids[n];
-            let factor = match (grid.file.unit, unit) {
-                (Some(own), Some(unit)) if own != unit => {
-                    let factor = own.metres() / unit.metres();
-                    notes.push(format!("{} is in {own}; it was rescaled to {unit} (times {factor})", grid.entry.path));
-                    factor
+/// The operands of the expression. Lattices in another unit than the rest are rescaled, with a line about it. The values
+/// of the files go over to the operands.
+fn operands(
+    given: &mut Given,
+    unit: Option<Unit>,
+    max_memory: Option<u64>,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Operand>, Failure> {
+    let mut operands = Vec::new();
+    let mut held = 0;
+    for which in given.order.clone() {
+        let operand = match which {
+            Which::Mesh(n) => Operand::Mesh(given.meshes[n].loaded.mesh.clone()),
+            Which::Grid(n) => {
+                let needed = held + given.held() + Sampled::memory_of_file(&given.grids[n].file);
+                if let Some(cap) = max_memory.filter(|&cap| needed > cap) {
+                    return Err(Failure::memory(needed, cap, max_memory)
+                        .hint("for the lattices that are read; a larger --max-memory"));
                 }
-                _ => 1.0,
-            };
-            Operand::Grid(Arc::new(Sampled::of_file(&grid.file, factor)))
-        }
-    };
-    given.order.iter().map(&mut operand).collect()
+                let grid = &mut given.grids[n];
+                let factor = match (grid.file.unit, unit) {
+                    (Some(own), Some(unit)) if own != unit => {
+                        let factor = own.metres() / unit.metres();
+                        let path = &grid.entry.path;
+                        notes.push(format!("{path} is in {own}; it was rescaled to {unit} (times {factor})"));
+                        factor
+                    }
+                    _ => 1.0,
+                };
+                let sampled = Sampled::of_file(&grid.file, factor);
+                grid.file.values = GridValues::Dense(Vec::new());
+                Operand::Grid(Arc::new(sampled))
+            }
+        };
+        held += operand.memory();
+        operands.push(operand);
+    }
+    Ok(operands)
 }
 
 /// The expressions, parsed.
@@ -220,7 +243,7 @@ fn scale(args: &FieldArgs, unit: Option<Unit>, bounds: Option<&Bounds>) -> Resul
     Ok(Scale { voxel, ..base })
 }
 
-fn options(args: &FieldArgs, scale: &Scale, given: &Given) -> Result<Options, Failure> {
+fn options(args: &FieldArgs, scale: &Scale, given: &Given, held: u64) -> Result<Options, Failure> {
     let voxel = match (&args.voxel, scale.voxel) {
         (Some(_), Some(h)) => VoxelSize::Length(h),
         _ => VoxelSize::Along(args.resolution),
@@ -234,7 +257,8 @@ fn options(args: &FieldArgs, scale: &Scale, given: &Given) -> Result<Options, Fa
         classes: given.painted().map(|(_, colours)| pipeline::classes(colours)).collect(),
         orient: args.orient.into(),
         collapse: !args.no_collapse,
-        max_memory: machine::memory_cap(args.max_memory),
+        // What the lattices of the files take is taken already.
+        max_memory: machine::memory_cap(args.max_memory).map(|cap| cap.saturating_sub(held)),
         ..Options::new(voxel)
     })
 }
@@ -265,6 +289,8 @@ struct Run<'a> {
     scale: &'a Scale,
     given: &'a Given,
     options: &'a Options,
+    /// Bytes that the operands' lattices take.
+    held: u64,
     session: &'a Session,
     builder: FieldBuilder<'a>,
 }
@@ -295,6 +321,11 @@ impl Run<'_> {
     fn failure(&self, error: &pipeline::Error) -> Failure {
         let labels = self.given.labels();
         let unit = self.scale.unit.map(|unit| unit.to_string());
+        if let (pipeline::Error::Memory { needed, .. }, Some(cap), 1..) = (error, self.args.max_memory, self.held) {
+            let lattices = words::bytes(self.held);
+            let hint = format!("a larger voxel; the lattices that were read take {lattices} of it");
+            return Failure::memory(needed.saturating_add(self.held), cap, self.args.max_memory).hint(hint);
+        }
         let asked = Asked { voxel: self.args.voxel.is_some(), memory: self.args.max_memory };
         Failure::pipeline(error, &labels, unit.as_deref(), asked)
     }
@@ -423,9 +454,6 @@ fn say(session: &Session, report: &RunReport, frames: usize, unit: Option<Unit>)
         rows.extend(summary::stages(report));
     }
     session.say(summary::table(&rows).trim_end());
-    for warning in &report.warnings {
-        session.say(&format!("note: {warning}"));
-    }
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::args::InputArgs;
 use super::exit::Failure;
 use super::input::{self, Input, is_stream};
+use super::negative;
 use super::report::RunReport;
 use super::session::Session;
 use super::slice::{self, GridInput};
@@ -32,7 +33,13 @@ pub enum Which {
 
 impl Given {
     /// Reads every path; a grid is known by its content.
-    pub fn read(paths: &[&Path], args: &InputArgs, session: &Session) -> Result<Self, Failure> {
+    pub fn read(
+        paths: &[&Path],
+        args: &InputArgs,
+        max_memory: Option<u64>,
+        session: &Session,
+        notes: &mut Vec<String>,
+    ) -> Result<Self, Failure> {
         input::check_streams(paths)?;
         session.progress.stage("read")?;
         let mut inputs = Self { meshes: Vec::new(), grids: Vec::new(), order: Vec::new() };
@@ -40,13 +47,21 @@ impl Given {
             let bytes = input::bytes_of(path, session)?;
             if is_grid(&bytes, path, args) {
                 inputs.order.push(Which::Grid(inputs.grids.len()));
-                inputs.grids.push(slice::grid_of(path, &bytes)?);
+                let left = max_memory.map(|cap| cap.saturating_sub(inputs.held()));
+                inputs.grids.push(slice::grid_of(path, &bytes, left, notes)?);
             } else {
                 inputs.order.push(Which::Mesh(inputs.meshes.len()));
-                inputs.meshes.push(input::mesh_of(path, &bytes, args, session)?);
+                let mut mesh = input::mesh_of(path, &bytes, args, session, notes)?;
+                negative::leave_out(&mut mesh, notes);
+                inputs.meshes.push(mesh);
             }
         }
         Ok(inputs)
+    }
+
+    /// Memory that the values of the grids take, bytes.
+    pub fn held(&self) -> u64 {
+        self.grids.iter().map(|grid| grid.file.values.memory()).sum()
     }
 
     /// Fills in what the report says of the inputs.
@@ -56,8 +71,6 @@ impl Given {
             Which::Grid(n) => self.grids[n].entry.clone(),
         };
         report.inputs = self.order.iter().map(entry).collect();
-        let notes = self.grids.iter().flat_map(|grid| &grid.file.warnings).cloned();
-        report.warnings.extend(notes);
         let nowhere = self.grids.iter().filter(|grid| !grid.file.format.says_where());
         report.warnings.extend(nowhere.map(|grid| {
             let (path, format) = (&grid.entry.path, &grid.entry.format);

@@ -7,9 +7,10 @@ use sha2::{Digest, Sha256};
 
 use super::args::InputArgs;
 use super::exit::{Exit, Failure};
+use super::negative;
 use super::report::{InputEntry, PartEntry};
 use super::session::Session;
-use crate::io::{self, Format, Loaded, Unit};
+use crate::io::{self, Format, Loaded, Part, Unit};
 use crate::mesh::{ValidateOptions, Validity, validate};
 
 /// One mesh as read.
@@ -32,11 +33,30 @@ pub fn label(path: &Path) -> String {
     if is_stream(path) { "standard input".into() } else { path.display().to_string() }
 }
 
-/// Reads every path, in order; the standard input at most once.
-pub fn read_all(paths: &[&Path], args: &InputArgs, session: &Session) -> Result<Vec<Input>, Failure> {
+/// Reads every path, in order; the standard input at most once. What the readers found odd goes to `notes`, and so
+/// does what the files would take away from the rest.
+pub fn read_all(
+    paths: &[&Path],
+    args: &InputArgs,
+    session: &Session,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Input>, Failure> {
+    let mut inputs = read_operands(paths, args, session, notes)?;
+    inputs.iter_mut().for_each(|input| negative::leave_out(input, notes));
+    Ok(inputs)
+}
+
+/// The same, but the inputs keep what is to be taken away from them.
+pub fn read_operands(
+    paths: &[&Path],
+    args: &InputArgs,
+    session: &Session,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Input>, Failure> {
     check_streams(paths)?;
     session.progress.stage("read")?;
-    paths.iter().map(|path| read(path, args, session)).collect()
+    let mut read = |path: &&Path| mesh_of(path, &bytes_of(path, session)?, args, session, notes);
+    paths.iter().map(&mut read).collect()
 }
 
 /// Refuses to read standard input twice, and what cannot be read.
@@ -45,12 +65,6 @@ pub fn check_streams(paths: &[&Path]) -> Result<(), Failure> {
         0 | 1 => paths.iter().try_for_each(|path| super::files::check_input(path)),
         _ => Err(Failure::usage("standard input (`-`) can be read only once")),
     }
-}
-
-/// Reads one path; an input without triangles is an error.
-pub fn read(path: &Path, args: &InputArgs, session: &Session) -> Result<Input, Failure> {
-    let bytes = bytes_of(path, session)?;
-    mesh_of(path, &bytes, args, session)
 }
 
 /// All bytes of a path.
@@ -67,8 +81,14 @@ pub fn bytes_of(path: &Path, session: &Session) -> Result<Vec<u8>, Failure> {
     Ok(bytes)
 }
 
-/// The mesh in the bytes of a path.
-pub fn mesh_of(path: &Path, bytes: &[u8], args: &InputArgs, session: &Session) -> Result<Input, Failure> {
+/// The mesh in the bytes of a path. What the reader found odd goes to `notes`.
+pub fn mesh_of(
+    path: &Path,
+    bytes: &[u8],
+    args: &InputArgs,
+    session: &Session,
+    notes: &mut Vec<String>,
+) -> Result<Input, Failure> {
     let label = label(path);
     let stream = is_stream(path);
     let name = (!stream).then_some(path);
@@ -77,6 +97,10 @@ pub fn mesh_of(path: &Path, bytes: &[u8], args: &InputArgs, session: &Session) -
         return Err(Failure::input(format!("{label}: the file has no triangles")));
     }
     session.progress.check()?;
+    notes.extend(loaded.warnings.iter().map(|warning| format!("{label}: {warning}")));
+    let entries = |parts: &[Part]| -> Vec<PartEntry> {
+        parts.iter().map(|part| PartEntry { name: part.name.clone(), triangles: part.triangles.len() }).collect()
+    };
     let entry = InputEntry {
         path: label.clone(),
         name: None,
@@ -84,11 +108,8 @@ pub fn mesh_of(path: &Path, bytes: &[u8], args: &InputArgs, session: &Session) -
         bytes: bytes.len() as u64,
         sha256: sha256(bytes),
         unit: loaded.unit.map(|unit| unit.to_string()),
-        parts: loaded
-            .parts
-            .iter()
-            .map(|part| PartEntry { name: part.name.clone(), triangles: part.triangles.len() })
-            .collect(),
+        parts: entries(&loaded.parts),
+        negative_parts: loaded.negative.as_ref().map_or(Vec::new(), |negative| entries(&negative.parts)),
         warnings: loaded.warnings.clone(),
         validity: None,
     };
@@ -163,7 +184,8 @@ pub fn common_unit(inputs: &mut [Input], args: &InputArgs, notes: &mut Vec<Strin
         };
         if own != unit {
             let factor = own.metres() / unit.metres();
-            for p in &mut input.loaded.mesh.positions {
+            let negative = input.loaded.negative.iter_mut().map(|negative| &mut negative.mesh);
+            for p in std::iter::once(&mut input.loaded.mesh).chain(negative).flat_map(|mesh| &mut mesh.positions) {
                 *p *= factor;
             }
             notes.push(format!("{} is in {own}; it was rescaled to {unit} (times {factor})", input.label));

@@ -16,12 +16,12 @@ use crate::pipeline::{self, LengthsReport, Options, ThicknessReport, VoxelSize};
 
 /// Looks at one file and prints a table.
 pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
-    let mut inputs = report.timed("read", |_| input::read_all(&[&args.input], &args.reading, session))?;
+    let mut inputs =
+        report.timed("read", |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     let Some(input) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
     session.progress.stage("examine")?;
     let validity = report.timed("examine", |_| input::examine(&input.loaded, session))?;
-    report.warnings.extend(input.loaded.warnings.iter().cloned());
     report.warnings.extend(closable(input, &validity, session)?);
     report.warnings.extend(summary::size_doubts(&input.loaded, unit));
     report.options = json!({ "unit": unit.map(|unit| unit.to_string()) });
@@ -34,11 +34,7 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
         let mut rows = summary::inspection(input, &validity, unit);
         let name = unit.map(|unit| unit.to_string());
         rows.extend(report.thickness.iter().flat_map(|thickness| thickness_rows(thickness, name.as_deref())));
-        let mut text = summary::table(&rows);
-        for warning in &report.warnings {
-            text.push_str(&format!("note: {warning}\n"));
-        }
-        super::output::write_stream(text.as_bytes())?;
+        super::output::write_stream(summary::table(&rows).as_bytes())?;
     }
     let found: Vec<String> = failing(&args.fail_on, &validity);
     if found.is_empty() {

@@ -99,6 +99,12 @@ pub enum QuantityError {
         /// What was typed.
         text: String,
     },
+    /// A length far beyond all that is measured.
+    #[error("`{length}` is a length that cannot be meant in any unit")]
+    Absurd {
+        /// What was typed.
+        length: String,
+    },
     /// A length with a unit, for a model without one.
     #[error("`{length}` needs the unit of the model, and the file carries none")]
     UnitUnknown {
@@ -147,18 +153,37 @@ impl FromStr for Length {
 
 impl fmt::Display for Length {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = self.number();
+        // Nobody counts three hundred zeros.
+        if (1e-9..1e15).contains(&value) {
+            write!(f, "{value}")?
+        } else {
+            write!(f, "{value:e}")?
+        }
         match self {
-            Self::Plain(value) => write!(f, "{value}"),
-            Self::Unit(value, unit) => write!(f, "{value}{unit}"),
-            Self::Voxels(value) => write!(f, "{value}h"),
-            Self::Percent(value) => write!(f, "{value}%"),
+            Self::Plain(_) => Ok(()),
+            Self::Unit(_, unit) => write!(f, "{unit}"),
+            Self::Voxels(_) => f.write_str("h"),
+            Self::Percent(_) => f.write_str("%"),
         }
     }
 }
 
+/// Numbers of a length that may be meant, in whatever unit; coordinates beyond the upper end are refused too.
+const MEANT: std::ops::RangeInclusive<f64> = 1e-30..=1e15;
+
 impl Length {
+    /// The number that was typed.
+    fn number(&self) -> f64 {
+        let (Self::Plain(value) | Self::Unit(value, _) | Self::Voxels(value) | Self::Percent(value)) = *self;
+        value
+    }
+
     /// The length in model units.
     pub fn resolve(&self, scale: &Scale) -> Result<f64, QuantityError> {
+        if !MEANT.contains(&self.number()) {
+            return Err(QuantityError::Absurd { length: self.to_string() });
+        }
         let length = match *self {
             Self::Plain(value) => value,
             Self::Percent(value) => value / 100.0 * scale.diagonal,
@@ -267,9 +292,13 @@ mod tests {
         for text in ["0", "-1", "0%", "-2h"] {
             assert!(matches!(text.parse::<Length>(), Err(QuantityError::NotPositive { .. })), "{text}");
         }
-        assert!(matches!(length("1e300").resolve(&SCALE), Ok(v) if v == 1e300));
+        for text in ["1e300", "1e-300", "1e-300h", "1e300%"] {
+            let error = length(text).resolve(&SCALE).unwrap_err();
+            assert_eq!(error, QuantityError::Absurd { length: text.into() }, "{text}");
+        }
         let wide = Scale { diagonal: f64::MAX, ..SCALE };
         assert!(matches!(length("1000%").resolve(&wide), Err(QuantityError::NotPositive { .. })));
+        assert!(length("1%").resolve(&Scale { diagonal: 0.0, ..SCALE }).is_err());
     }
 
     #[test]

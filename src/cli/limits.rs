@@ -30,7 +30,8 @@ pub fn broken(report: &RunReport, max_memory: Option<u64>) -> Vec<String> {
             ));
         }
         if let Some(topology) = pipeline.topology.as_ref().filter(|topology| topology.is_large()) {
-            sentences.push(format!("the result is not what the input describes: {}", doubts::changes(topology).join("; ")));
+            sentences
+                .push(format!("the result is not what the input describes: {}", doubts::changes(topology).join("; ")));
         }
     }
     match (report.peak_memory_bytes.or_else(super::machine::peak_memory), max_memory) {

@@ -23,6 +23,7 @@ mod length;
 mod limits;
 mod machine;
 mod morphology;
+mod negative;
 mod output;
 mod progress_bar;
 mod render;
@@ -223,6 +224,8 @@ fn run(mut job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<E
     let mut report = RunReport::new(job.verb);
     let outcome = work(&session, &mut report);
     session.clear_bar();
+    // Here alone, so that no verb can keep a warning to itself, nor a run that fails.
+    let notes: Vec<String> = report.warnings.iter().map(|warning| format!("note: {warning}")).collect();
     let outcome = outcome.and_then(|exit| {
         session.check_files()?;
         report.close(&Ok(exit), session.start);
@@ -233,10 +236,12 @@ fn run(mut job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<E
     let failure = match outcome {
         Ok(exit) => {
             session.speak();
+            notes.iter().for_each(|note| session.tell(note));
             return exit;
         }
         Err(failure) => failure,
     };
+    notes.iter().for_each(|note| session.tell(note));
     // Of a run that failed there is nothing but its report.
     session.discard();
     report.close(&Err(failure.clone()), session.start);

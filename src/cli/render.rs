@@ -10,6 +10,7 @@ use super::choices::EdgeChoice;
 use super::exit::{Exit, Failure};
 use super::given::{Given, Which};
 use super::input::{self, Input, is_stream};
+use super::limits;
 use super::output::write_side;
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
@@ -19,7 +20,8 @@ use crate::picture::{EdgeDrawing, Image, Painted, RenderOptions, View, render, r
 /// Draws one mesh or slice, or two on one sheet.
 pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let paths: Vec<&Path> = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
-    let mut inputs = report.timed("read", |_| Given::read(&paths, &args.reading, session))?;
+    let mut inputs = report
+        .timed("read", |report| Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings))?;
     // Two meshes share one camera, so they must share one unit.
     input::common_unit(&mut inputs.meshes, &args.reading, &mut report.warnings);
     inputs.describe(report);
@@ -52,9 +54,6 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
     for slice in &report.slices {
         session.say(&slice.words(inputs.0.unit_of(&slice.path).as_deref()));
     }
-    for warning in &report.warnings {
-        session.say(&format!("note: {warning}"));
-    }
     report.output = Some(OutputEntry {
         path: label,
         format: "png".into(),
@@ -63,7 +62,9 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
         unit: None,
         validity: None,
     });
-    Ok(Exit::Done)
+    let broken = limits::broken(report, args.max_memory);
+    report.warnings.extend(broken.iter().cloned());
+    Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
 }
 
 /// What is drawn.

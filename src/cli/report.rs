@@ -103,6 +103,9 @@ pub struct InputEntry {
     pub unit: Option<String>,
     /// Its objects.
     pub parts: Vec<PartEntry>,
+    /// Its objects that are taken away from the others.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub negative_parts: Vec<PartEntry>,
     /// What the reader found odd.
     pub warnings: Vec<String>,
     /// Its state as read.

@@ -26,11 +26,11 @@ use crate::pipeline::{
 /// Makes the field of one file.
 pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let format = format(args)?;
-    let mut inputs = report.timed("read", |_| input::read_all(&[&args.input], &args.reading, session))?;
+    let mut inputs =
+        report.timed("read", |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     let Some(input) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
-    report.warnings.extend(input.loaded.warnings.iter().cloned());
     let validity = report.timed("examine", |_| {
         session.progress.stage("examine")?;
         input::examine(&input.loaded, session)
@@ -309,7 +309,4 @@ fn say(
         rows.extend(summary::stages(report));
     }
     session.say(summary::table(&rows).trim_end());
-    for warning in &report.warnings {
-        session.say(&format!("note: {warning}"));
-    }
 }

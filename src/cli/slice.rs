@@ -13,7 +13,7 @@ use super::length::QuantityError;
 use super::report::InputEntry;
 use super::session::Session;
 use super::words::{self, UnitName};
-use crate::io::{GridFile, Unit, read_grid_bytes};
+use crate::io::{GridFile, GridReadProblem, Unit, read_grid_within};
 use crate::mesh::Bounds;
 use crate::picture::{Axis, Image, RenderError, SliceColours, SlicePlane, SliceSamples, sample_slice};
 use crate::sdf::exact::{ExactDistance, PointSign};
@@ -118,18 +118,33 @@ pub struct GridInput {
     pub entry: InputEntry,
 }
 
-/// The grid in the bytes of a path.
-pub fn grid_of(path: &Path, bytes: &[u8]) -> Result<GridInput, Failure> {
+/// The grid in the bytes of a path. What the reader found odd goes to `notes`.
+/// More memory than `max_memory` is refused before it is taken.
+pub fn grid_of(
+    path: &Path,
+    bytes: &[u8],
+    max_memory: Option<u64>,
+    notes: &mut Vec<String>,
+) -> Result<GridInput, Failure> {
     let name = (!input::is_stream(path)).then_some(path);
-    let file = read_grid_bytes(bytes, None, name).map_err(|error| Failure::input(error.to_string()))?;
+    let file = read_grid_within(bytes, None, name, max_memory).map_err(|error| match *error.problem {
+        GridReadProblem::Memory { needed, allowed } => {
+            let hint = format!("for {} alone; a larger --max-memory, or a coarser lattice", input::label(path));
+            Failure::memory(needed, allowed, max_memory).hint(hint)
+        }
+        _ => Failure::input(error.to_string()),
+    })?;
+    let label = input::label(path);
+    notes.extend(file.warnings.iter().map(|warning| format!("{label}: {warning}")));
     let entry = InputEntry {
-        path: input::label(path),
+        path: label,
         name: None,
         format: file.format.to_string(),
         bytes: bytes.len() as u64,
         sha256: input::sha256(bytes),
         unit: file.unit.map(|unit| unit.to_string()),
         parts: Vec::new(),
+        negative_parts: Vec::new(),
         warnings: file.warnings.clone(),
         validity: None,
     };

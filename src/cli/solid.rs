@@ -15,7 +15,7 @@ use super::length::{Scale, Simplify};
 use super::output::{self, Target, write_verified};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
-use super::{backend, limits, machine, summary, words};
+use super::{backend, limits, machine, negative, summary, words};
 use crate::fit::FitOptions;
 use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
 use crate::ldi::Expression;
@@ -47,11 +47,13 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
     }
     let mut target = args.output.as_deref().map(|path| Target::new(path, &args.writing)).transpose()?;
     args.map.as_deref().map_or(Ok(()), super::compare::check_map)?;
-    let mut inputs = report.timed("read", |_| input::read_all(&job.paths, &args.reading, session))?;
+    let mut inputs = report
+        .timed("read", |report| input::read_operands(&job.paths, &args.reading, session, &mut report.warnings))?;
     for (input, name) in inputs.iter_mut().zip(&job.names) {
         input.entry.name = Some(name.clone());
     }
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
+    let expression = negative::as_operands(&mut inputs, &job.expression);
     let (options, scale) = options(args, unit, &inputs, target.as_ref())?;
     backend::check_built(args.backend)?;
     report.options = resolved(args, unit, &options);
@@ -60,7 +62,7 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
         return plan(job, inputs, (&options, &scale), report);
     }
     target.iter_mut().for_each(|target| target.set_unit(unit));
-    make(job, &inputs, (&options, &scale), target.as_ref(), session, report)
+    make(job, &expression, &inputs, (&options, &scale), target.as_ref(), session, report)
 }
 
 fn options(
@@ -172,6 +174,7 @@ fn plan(
 
 fn make(
     job: &Job<'_>,
+    expression: &Expression,
     inputs: &[Input],
     (options, scale): (&Options, &Scale),
     target: Option<&Target>,
@@ -187,9 +190,16 @@ fn make(
         }
         Ok::<(), Failure>(())
     })?;
+    let (rest, of_rest);
+    let (mut inputs, mut options) = (inputs, options);
+    if job.change.is_some() && inputs.len() > 1 {
+        let carved = negative::carved(inputs, expression, options, session)?;
+        (rest, of_rest) = carved.map_err(|e| failure(&e, inputs, unit, args))?;
+        (inputs, options) = (std::slice::from_ref(&rest), &of_rest);
+    }
     let meshes: Vec<TriMesh> = inputs.iter().map(|input| input.loaded.mesh.clone()).collect();
     let made = match &job.change {
-        None => pipeline::boolean(&meshes, &job.expression, options, &session.progress).map(Changed::from),
+        None => pipeline::boolean(&meshes, expression, options, &session.progress).map(Changed::from),
         Some(change) => change.apply(&meshes[0], options, scale, session, report)?,
     };
     let Changed { outcome, canal_of } = made.map_err(|e| failure(&e, inputs, unit, args))?;
@@ -294,7 +304,8 @@ fn judge(read: &Loaded, made: &TriMesh, moved: Option<f64>, session: &Session) -
         return Ok(validity);
     }
     let problems = validity.problems().join("; ");
-    let failure = Failure::new(Exit::Limit, format!("the result is not a valid solid ({problems}); it was not written"));
+    let failure =
+        Failure::new(Exit::Limit, format!("the result is not a valid solid ({problems}); it was not written"));
     Err(match moved {
         Some(moved) => failure.hint(format!(
             "{} moves vertices by up to {} so far from the origin: write OBJ, PLY, OFF or 3MF, or move the model to the origin first",

@@ -1,9 +1,9 @@
 //! What a run says to a person: a few aligned lines, made from the report.
 
+use super::doubts;
 use super::input::Input;
 use super::report::{InputEntry, RunReport};
 use super::session::Session;
-use super::doubts;
 use super::words::{self, UnitName};
 use crate::io::{Loaded, Unit};
 use crate::mesh::Validity;
@@ -26,12 +26,9 @@ pub fn table(rows: &[Row]) -> String {
     })
 }
 
-/// Says what was wrong, what was done and what came out, and then the warnings.
+/// Says what was wrong, what was done and what came out.
 pub fn say(session: &Session, report: &RunReport, unit: UnitName<'_>) {
     session.say(table(&rows(report, unit)).trim_end());
-    for warning in &report.warnings {
-        session.say(&format!("note: {warning}"));
-    }
     if let Some(pipeline) = report.pipeline.as_ref().filter(|_| session.verbose) {
         session.say(table(&details(report, pipeline, unit)).trim_end());
     }
@@ -282,6 +279,10 @@ pub fn inspection(input: &Input, validity: &Validity, unit: Option<Unit>) -> Vec
     }
     if listed > 0 && parts.len() > listed {
         rows.push(("objects", format!("and {} more", words::count(parts.len() - listed))));
+    }
+    for part in &input.entry.negative_parts {
+        let called = if part.name.is_empty() { "(no name)" } else { &part.name };
+        rows.push(("negative", format!("{called}: {}, not counted below", words::plural(part.triangles, "triangle"))));
     }
     if let Some([min, max]) = validity.bounds {
         let place = |p: [f64; 3]| p.map(words::number).join(" ");

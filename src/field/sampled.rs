@@ -62,6 +62,25 @@ impl Sampled {
         Self::new(grid, lattice)
     }
 
+    /// Bytes of memory that the field of a file takes, beside the file's own values.
+    pub fn memory_of_file(file: &GridFile) -> u64 {
+        let bricks = match &file.values {
+            GridValues::Dense(_) => {
+                file.dims.iter().fold(1u64, |all, &count| all.saturating_mul((count as u64).div_ceil(BRICK as u64)))
+            }
+            GridValues::Sparse(values) => values.blocks.len() as u64,
+        };
+        bricks.saturating_mul(Self::BYTES_OF_BRICK)
+    }
+
+    /// Bytes of memory that it takes.
+    pub fn memory(&self) -> u64 {
+        self.grid.bricks.len() as u64 * Self::BYTES_OF_BRICK
+    }
+
+    /// Of a brick: its values, its range, its place in the table and twice in lists.
+    const BYTES_OF_BRICK: u64 = (size_of::<[f32; BRICK_VOXELS]>() + size_of::<Range>() + 64) as u64;
+
     /// The lattice.
     pub fn lattice(&self) -> &Lattice {
         &self.lattice

@@ -1,9 +1,9 @@
 //! Simplification of a source mesh that is right already.
 
+use super::FitOptions;
 use super::facets::{Facets, Side, Sides};
 use super::simplify::simplified;
 use super::surface::{NOT_KEPT, Surface};
-use super::FitOptions;
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
 

@@ -63,6 +63,28 @@ pub enum ReadProblem {
     /// The file is sound as far as it goes and holds no triangle.
     #[error("the file holds no triangle")]
     NoTriangles,
+    /// The file holds points alone; a surface must be laid through them first.
+    #[error(
+        "a point cloud: the file holds {points} points and no face; a program that lays a surface through points must come first"
+    )]
+    PointCloud {
+        /// How many there are.
+        points: usize,
+    },
+    /// All triangles of the file had to be left out.
+    #[error("no triangle is left: {0}")]
+    NothingLeft(
+        /// What was left out, and why.
+        String,
+    ),
+    /// The content is that of a file that is no mesh, or of a format that is not read here.
+    #[error("the file holds {what}: {advice}")]
+    Foreign {
+        /// What the file really is.
+        what: &'static str,
+        /// What to do about it.
+        advice: &'static str,
+    },
     /// The file ends early; a new download or export is needed.
     #[error("the file is cut short: {expected} expected, {found}")]
     Truncated {
@@ -79,10 +101,10 @@ pub enum ReadProblem {
         /// What is there.
         found: String,
     },
-    /// A coordinate that is not a finite number.
-    #[error("a finite coordinate expected, found {found}")]
+    /// A number of a transform that is not finite. Vertices with such coordinates are left out instead.
+    #[error("a finite number expected, found {found}")]
     NotFinite {
-        /// The coordinate as it stands in the file, or its value.
+        /// The number as it stands in the file.
         found: String,
     },
     /// A face refers to something that is not there.

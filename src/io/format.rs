@@ -60,7 +60,8 @@ impl Format {
         Self::from_content(bytes).or(named).or_else(|| stl::looks_binary(bytes).then_some(Self::Stl))
     }
 
-    fn from_content(bytes: &[u8]) -> Option<Self> {
+    /// The format of `bytes` by what they hold.
+    pub(super) fn from_content(bytes: &[u8]) -> Option<Self> {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
         if bytes.starts_with(b"glTF") {
             Some(Self::Glb)

@@ -21,7 +21,9 @@
 
 mod colour;
 pub(crate) mod draft;
+mod encoding;
 mod error;
+mod foreign;
 mod format;
 mod gltf;
 mod grids;
@@ -36,6 +38,7 @@ mod text;
 mod three_mf;
 mod unit;
 
+use std::borrow::Cow;
 use std::fs;
 use std::io::Write;
 use std::ops::Range;
@@ -50,7 +53,7 @@ pub use format::{Format, UnknownFormat};
 pub use grids::{
     BLOCK_SIDE, BLOCK_VOXELS, Block, BlockValues, DistanceSamples, GridFile, GridFormat, GridReadError,
     GridReadProblem, GridValues, SampleBlocks, SparseValues, Tile, UnknownGridFormat, encode_grid, read_grid,
-    read_grid_bytes, write_grid,
+    read_grid_bytes, read_grid_within, write_grid,
 };
 pub use ply::{VertexMap, encode_vertex_map};
 pub use save::save_bytes;
@@ -63,6 +66,15 @@ pub struct Part {
     pub name: String,
     /// Its triangles in the mesh.
     pub triangles: Range<usize>,
+}
+
+/// Solids that a file takes away from its mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Negative {
+    /// The triangles: at least one; every coordinate finite, every index in range.
+    pub mesh: TriMesh,
+    /// The pieces, in order and without gaps; at least one, none empty.
+    pub parts: Vec<Part>,
 }
 
 /// A file as read.
@@ -78,6 +90,8 @@ pub struct Loaded {
     pub unit: Option<Unit>,
     /// The pieces of the file, in order and without gaps; at least one, none empty.
     pub parts: Vec<Part>,
+    /// What the file says is to be taken away from `mesh`: negative volumes of slicers in 3MF.
+    pub negative: Option<Negative>,
     /// Sentences about what was left out or read otherwise than it stands.
     pub warnings: Vec<String>,
 }
@@ -117,9 +131,21 @@ pub fn read(path: &Path) -> Result<Loaded, ReadError> {
 /// # Errors
 /// When the bytes are not a sound file: see [`ReadProblem`].
 pub fn read_bytes(bytes: &[u8], format: Option<Format>, path: Option<&Path>) -> Result<Loaded, ReadError> {
+    let plain = match stl::is_exactly_binary(bytes) {
+        true => Cow::Borrowed(bytes),
+        false => encoding::plain(bytes),
+    };
+    let bytes = plain.as_ref();
     let found = format.or_else(|| Format::detect(bytes, path));
+    let foreign = || foreign::recognise(bytes, path);
+    // A name says little: what begins as something else is that.
+    let misnamed = match format.is_none() && Format::from_content(bytes).is_none() {
+        true => foreign(),
+        false => None,
+    };
     let loaded = match found {
         _ if bytes.is_empty() => Err(ReadProblem::Empty.into()),
+        _ if misnamed.is_some() => Err(misnamed.unwrap_or(ReadProblem::UnknownFormat).into()),
         None => Err(ReadProblem::UnknownFormat.into()),
         Some(Format::Stl) => stl::read(bytes),
         Some(Format::Obj) => obj::read(bytes),
@@ -129,7 +155,10 @@ pub fn read_bytes(bytes: &[u8], format: Option<Format>, path: Option<&Path>) -> 
         Some(Format::Gltf) => gltf::read_json(bytes, path),
         Some(Format::ThreeMf) => three_mf::read(bytes),
     };
-    loaded.map_err(|error| error.in_file(path, found))
+    loaded.map_err(|error| match format.and_then(|_| foreign::recognise(bytes, None)) {
+        Some(problem) => ReadError::from(problem).in_file(path, found),
+        None => error.in_file(path, found),
+    })
 }
 
 /// Writes `mesh` to `path`, whole or not at all: see [`save_bytes`].

@@ -50,13 +50,15 @@ struct Reader {
     /// The largest index so far and its line: a face may refer to vertices that come later, so
     /// the check waits for the end.
     largest: Option<(u32, usize)>,
-    /// Lines, points and free-form statements passed over.
+    /// Lines and free-form statements passed over.
     passed_over: usize,
+    /// Statements of points passed over.
+    points: usize,
 }
 
 impl Default for Reader {
     fn default() -> Self {
-        Self { soup: Soup::new(), face: Vec::new(), largest: None, passed_over: 0 }
+        Self { soup: Soup::new(), face: Vec::new(), largest: None, passed_over: 0, points: 0 }
     }
 }
 
@@ -70,8 +72,12 @@ impl Reader {
                 self.soup.begin_part(words.rest());
                 Ok(())
             }
-            Some(b"l" | b"p" | b"curv" | b"curv2" | b"surf") => {
+            Some(b"l" | b"curv" | b"curv2" | b"surf") => {
                 self.passed_over += 1;
+                Ok(())
+            }
+            Some(b"p") => {
+                self.points += 1;
                 Ok(())
             }
             _ => Ok(()),
@@ -85,9 +91,6 @@ impl Reader {
             let word = words.next();
             let fail = || ReadProblem::syntax("three coordinates after `v`", quoted_or_end(word));
             p[k] = word.and_then(number).ok_or_else(|| ReadError::line(at, fail()))?;
-            if !p[k].is_finite() {
-                return Err(ReadError::line(at, ReadProblem::NotFinite { found: quoted_or_end(word) }));
-            }
         }
         if self.soup.positions.len() >= u32::MAX as usize {
             return Err(too_many_vertices());
@@ -132,8 +135,13 @@ impl Reader {
         {
             return Err(ReadError::line(line, ReadProblem::vertex(i64::from(largest) + 1, count)));
         }
-        if self.passed_over > 0 {
-            let what = counted(self.passed_over, "line, point or free-form statement");
+        // A file of points alone is named as such.
+        let passed_over = match self.soup.triangles.is_empty() {
+            true => self.passed_over,
+            false => self.passed_over + self.points,
+        };
+        if passed_over > 0 {
+            let what = counted(passed_over, "line, point or free-form statement");
             self.soup.warnings.push(format!("{what} left out"));
         }
         self.soup.finish(Format::Obj, None)

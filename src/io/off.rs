@@ -8,14 +8,15 @@ use glam::DVec3;
 use super::colour::{Colours, LEVELS_OF_WHITE, Levels, Tails};
 use super::error::{ReadError, ReadProblem, WriteError};
 use super::soup::Soup;
-use super::text::{Lines, TextOut, Words, integer, number, quoted, quoted_or_end};
+use super::text::{Lines, TextOut, Words, integer, number, quoted};
 use super::{Format, Loaded};
 use crate::mesh::TriMesh;
 
 /// Whether the first word, after comments, is one of the format's keywords.
 pub(super) fn has_keyword(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 16)];
-    Lines::new(head).next_content().and_then(|(_, line)| Words::new(line).next()).is_some_and(|w| layout(w).is_some())
+    let first = Lines::new(head).next_content().and_then(|(_, line)| Words::new(line).next());
+    first.is_some_and(|word| layout(split_keyword(word).0).is_some())
 }
 
 /// What the keyword says of the vertices.
@@ -28,6 +29,13 @@ enum Layout {
         texture: bool,
     },
     OtherDimension,
+}
+
+/// A keyword and the number that some programs write right behind it: `OFF8`.
+fn split_keyword(word: &[u8]) -> (&[u8], &[u8]) {
+    let digits = word.iter().rev().take_while(|byte| byte.is_ascii_digit()).count();
+    let (keyword, number) = word.split_at(word.len() - digits);
+    if keyword.ends_with(b"OFF") { (keyword, number) } else { (word, b"") }
 }
 
 /// `[ST][C][N][4][n]OFF`: in each variant the position comes first, except that `4` and `n` give
@@ -46,33 +54,93 @@ fn layout(word: &[u8]) -> Option<Layout> {
     }
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
-    let mut lines = Lines::new(bytes);
-    let ([vertices, faces], extras) = header(&mut lines)?;
-    let [mut of_vertices, mut of_faces] = [Tints::default(), Tints::default()];
-    let mut soup = Soup::new();
-    // The shortest vertex line has six bytes, the shortest triangle eight.
-    soup.positions.reserve(vertices.min(lines.bytes_left() / 6));
-    for i in 0..vertices {
-        let (at, line) = next(&mut lines, "vertices", i, vertices)?;
-        let mut words = Words::new(line);
-        soup.positions.push(vertex(&mut words).map_err(|problem| ReadError::line(at, problem))?);
-        if let Some(extras) = extras {
-            of_vertices.add(words.rest(), extras, i..i + 1);
+/// Words across lines; comments are passed over.
+#[derive(Clone)]
+struct Stream<'a> {
+    lines: Lines<'a>,
+    /// What is left of the line.
+    words: Words<'a>,
+}
+
+impl<'a> Stream<'a> {
+    fn next(&mut self) -> Option<&'a [u8]> {
+        loop {
+            if let Some(word) = self.words.next() {
+                return Some(word);
+            }
+            self.words = Words::new(self.lines.next_content()?.1);
         }
     }
-    soup.triangles.reserve(faces.min(lines.bytes_left() / 8));
+
+    /// What is left of the line, which is done with.
+    fn rest_of_line(&mut self) -> &'a [u8] {
+        std::mem::replace(&mut self.words, Words::new(b"")).rest()
+    }
+
+    /// The colour after what was begun on line `first`. Nothing may follow on another line: there a number was missing.
+    fn colour(&mut self, first: usize, expected: &str) -> Result<&'a [u8], ReadError> {
+        let rest = self.rest_of_line();
+        match rest.is_empty() || self.lines.number() == first {
+            true => Ok(rest),
+            false => Err(self.fail(ReadProblem::syntax(format!("{expected} and then a new line"), quoted(rest)))),
+        }
+    }
+
+    /// Whether at least `count` lines with content follow the one being read.
+    fn has_lines(&self, count: usize) -> bool {
+        let mut lines = self.lines.clone();
+        (0..count).all(|_| lines.next_content().is_some())
+    }
+
+    fn fail(&self, problem: ReadProblem) -> ReadError {
+        ReadError::line(self.lines.number(), problem)
+    }
+
+    /// The error for a file that ends after `have` of `all` vertices or faces.
+    fn ends(&self, what: &str, have: usize, all: usize) -> ReadError {
+        self.fail(ReadProblem::truncated(format!("{all} {what}"), format!("the file ends after {have}")))
+    }
+
+    fn count(&self, word: Option<&[u8]>) -> Result<usize, ReadError> {
+        const WANTED: &str = "the numbers of vertices and faces";
+        let word = word.ok_or_else(|| self.fail(ReadProblem::truncated(WANTED, "the file ends")))?;
+        let value = integer(word).and_then(|n| u32::try_from(n).ok());
+        value.map(|n| n as usize).ok_or_else(|| self.fail(ReadProblem::syntax(WANTED, quoted(word))))
+    }
+}
+
+pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
+    let mut stream = Stream { lines: Lines::new(bytes), words: Words::new(b"") };
+    let ([vertices, faces], extras) = header(&mut stream)?;
+    let [mut of_vertices, mut of_faces] = [Tints::default(), Tints::default()];
+    let mut soup = Soup::new();
+    // The shortest vertex has six bytes, the shortest triangle eight.
+    soup.positions.reserve(vertices.min(stream.lines.bytes_left() / 6));
+    // Each vertex and each face begins a line, and may have a colour at its end; or there are not lines enough for that.
+    let by_line = stream.has_lines(vertices);
+    for i in 0..vertices {
+        let (p, line) = vertex(&mut stream, [i, vertices])?;
+        soup.positions.push(p);
+        if by_line {
+            let rest = stream.colour(line, "three coordinates")?;
+            extras.iter().for_each(|extras| of_vertices.add(rest, *extras, i..i + 1));
+        }
+    }
+    soup.triangles.reserve(faces.min(stream.lines.bytes_left() / 8));
+    let by_line = stream.has_lines(faces);
     let mut face = Vec::new();
     for i in 0..faces {
-        let (at, line) = next(&mut lines, "faces", i, faces)?;
-        let mut words = Words::new(line);
-        corners(&mut words, vertices, &mut face).map_err(|problem| ReadError::line(at, problem))?;
+        let line = corners(&mut stream, vertices, &mut face, [i, faces])?;
         let first = soup.triangles.len();
         soup.face(&face);
-        of_faces.add(words.rest(), Extras::default(), first..soup.triangles.len());
+        if by_line {
+            let rest = stream.colour(line, "as many vertex numbers as the face has")?;
+            of_faces.add(rest, Extras::default(), first..soup.triangles.len());
+        }
     }
-    if let Some((at, _)) = lines.next_content() {
-        soup.warnings.push(format!("the file goes on after its last face; left out from line {at}"));
+    if stream.next().is_some() {
+        let line = stream.lines.number();
+        soup.warnings.push(format!("the file goes on after its last face; left out from line {line}"));
     }
     soup.colours.vertices = of_vertices.levels();
     soup.colours.faces = of_faces.levels();
@@ -80,79 +148,71 @@ pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
 }
 
 /// The numbers of vertices and faces, and what surrounds the colours of vertices if the keyword says that they have some.
-/// The keyword may be missing, and the counts may stand on its line.
-fn header(lines: &mut Lines<'_>) -> Result<([usize; 2], Option<Extras>), ReadError> {
-    let ends = |lines: &Lines<'_>| {
-        let problem = ReadProblem::truncated("the numbers of vertices and faces", "the file ends");
-        ReadError::line(lines.number(), problem)
-    };
-    let (mut at, line) = lines.next_content().ok_or_else(|| ends(lines))?;
-    let mut words = Words::new(line);
-    let mut first = words.next();
+/// The keyword may be missing, and the counts may stand on its line, or right behind it. A number of edges may follow.
+fn header(stream: &mut Stream<'_>) -> Result<([usize; 2], Option<Extras>), ReadError> {
+    let mut first = stream.next();
     let mut extras = None;
-    match first.and_then(layout) {
+    let (keyword, number) = split_keyword(first.unwrap_or_default());
+    match layout(keyword) {
         Some(Layout::Points { normals, colours, texture }) => {
             extras = colours.then_some(Extras { before: 3 * usize::from(normals), after: 2 * usize::from(texture) });
-            first = words.next();
+            first = if number.is_empty() { stream.next() } else { Some(number) };
         }
         Some(Layout::OtherDimension) => {
             let problem = ReadProblem::Unsupported("OFF with other than three coordinates is not read here".into());
-            return Err(ReadError::line(at, problem));
+            return Err(stream.fail(problem));
         }
         None => {}
     }
     if first.is_some_and(|word| word.eq_ignore_ascii_case(b"BINARY")) {
         let problem = ReadProblem::Unsupported("binary OFF is not read here; write it as ASCII OFF or PLY".into());
-        return Err(ReadError::line(at, problem));
+        return Err(stream.fail(problem));
     }
-    if first.is_none() {
-        let (next, line) = lines.next_content().ok_or_else(|| ends(lines))?;
-        at = next;
-        words = Words::new(line);
-        first = words.next();
+    let vertices = stream.count(first)?;
+    let faces = stream.next();
+    let faces = stream.count(faces)?;
+    // The number of edges follows, as the format asks, or the first vertex does.
+    let next_line = || stream.lines.clone().next_content().map_or(b"".as_slice(), |(_, line)| line);
+    match stream.words.rest() {
+        b"" if Words::new(next_line()).nth(2).is_some() => {}
+        b"" => drop(stream.next()),
+        _ if stream.has_lines(vertices) => drop(stream.rest_of_line()),
+        _ => drop(stream.next()),
     }
-    let count = |word: Option<&[u8]>| {
-        let value = word.and_then(integer).and_then(|n| u32::try_from(n).ok());
-        let fail = || ReadProblem::syntax("the numbers of vertices and faces", quoted_or_end(word));
-        value.map(|n| n as usize).ok_or_else(|| ReadError::line(at, fail()))
-    };
-    Ok(([count(first)?, count(words.next())?], extras))
+    Ok(([vertices, faces], extras))
 }
 
-fn next<'a>(lines: &mut Lines<'a>, what: &str, have: usize, all: usize) -> Result<(usize, &'a [u8]), ReadError> {
-    lines.next_content().ok_or_else(|| {
-        let problem = ReadProblem::truncated(format!("{all} {what}"), format!("the file ends after {have}"));
-        ReadError::line(lines.number(), problem)
-    })
-}
-
-fn vertex(words: &mut Words<'_>) -> Result<DVec3, ReadProblem> {
-    let mut p = DVec3::ZERO;
+/// The next vertex, of which there should be so many, and the line where it begins.
+fn vertex(stream: &mut Stream<'_>, [have, all]: [usize; 2]) -> Result<(DVec3, usize), ReadError> {
+    let (mut p, mut line) = (DVec3::ZERO, 0);
     for k in 0..3 {
-        let word = words.next();
-        let fail = || ReadProblem::syntax("three coordinates", quoted_or_end(word));
-        p[k] = word.and_then(number).ok_or_else(fail)?;
-        if !p[k].is_finite() {
-            return Err(ReadProblem::NotFinite { found: quoted_or_end(word) });
-        }
+        let word = stream.next().ok_or_else(|| stream.ends("vertices", have, all))?;
+        p[k] = number(word).ok_or_else(|| stream.fail(ReadProblem::syntax("three coordinates", quoted(word))))?;
+        line = if k == 0 { stream.lines.number() } else { line };
     }
-    Ok(p)
+    Ok((p, line))
 }
 
-/// The corners of a face line.
-fn corners(words: &mut Words<'_>, vertices: usize, face: &mut Vec<u32>) -> Result<(), ReadProblem> {
-    let word = words.next().unwrap_or_default();
+/// Reads the corners of the next face, of which there should be so many. Returns the line where it begins.
+fn corners(
+    stream: &mut Stream<'_>,
+    vertices: usize,
+    face: &mut Vec<u32>,
+    [have, all]: [usize; 2],
+) -> Result<usize, ReadError> {
+    let word = stream.next().ok_or_else(|| stream.ends("faces", have, all))?;
+    let line = stream.lines.number();
     let count = integer(word).filter(|n| *n >= 0);
-    let count = count.ok_or_else(|| ReadProblem::syntax("a number of corners", quoted(word)))?;
+    let count = count.ok_or_else(|| stream.fail(ReadProblem::syntax("a number of corners", quoted(word))))?;
     face.clear();
     for _ in 0..count {
-        let word = words.next();
-        let fail = || ReadProblem::syntax(format!("{count} vertex numbers"), quoted_or_end(word));
-        let index = word.and_then(integer).ok_or_else(fail)?;
+        let word = stream.next().ok_or_else(|| stream.ends("faces", have, all))?;
+        let fail = || stream.fail(ReadProblem::syntax(format!("{count} vertex numbers"), quoted(word)));
+        let index = integer(word).ok_or_else(fail)?;
         let corner = u32::try_from(index).ok().filter(|&i| (i as usize) < vertices);
-        face.push(corner.ok_or(ReadProblem::vertex(index, vertices))?);
+        face.push(corner.ok_or_else(|| stream.fail(ReadProblem::vertex(index, vertices)))?);
     }
-    Ok(())
+    Ok(line)
 }
 
 /// Numbers of a line that stand around a colour.

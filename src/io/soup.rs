@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 use super::colour::Gathered;
 use super::error::{ReadError, ReadProblem};
 use super::polygon;
-use super::{Format, Loaded, Part, Unit};
+use super::{Format, Loaded, Negative, Part, Unit};
 use crate::mesh::TriMesh;
 
 /// Bytes of a part's name that are kept.
@@ -20,10 +20,14 @@ pub(super) struct Soup {
     pub(super) triangles: Vec<[u32; 3]>,
     /// Sentences about what was read otherwise than it stands.
     pub(super) warnings: Vec<String>,
+    /// Points that are no vertices.
+    pub(super) points: usize,
     /// Colours of what has some.
     pub(super) colours: Gathered,
     parts: Vec<Part>,
     narrow_faces: usize,
+    /// Faces of more than three corners, one of which has no finite place.
+    unplaced_faces: usize,
     folded_polygons: usize,
     allowance: u64,
 }
@@ -34,9 +38,11 @@ impl Soup {
             positions: Vec::new(),
             triangles: Vec::new(),
             warnings: Vec::new(),
+            points: 0,
             colours: Gathered::default(),
             parts: Vec::new(),
             narrow_faces: 0,
+            unplaced_faces: 0,
             folded_polygons: 0,
             allowance: polygon::ALLOWANCE,
         }
@@ -69,6 +75,7 @@ impl Soup {
         match *corners {
             [a, b, c] => self.triangles.push([a, b, c]),
             [] | [_] | [_, _] => self.narrow_faces += 1,
+            _ if corners.iter().any(|&v| !self.positions[v as usize].is_finite()) => self.unplaced_faces += 1,
             _ => {
                 let whole = polygon::triangulate(&self.positions, corners, &mut self.allowance, &mut self.triangles);
                 self.folded_polygons += usize::from(!whole);
@@ -89,13 +96,14 @@ impl Soup {
 
     /// The finished mesh. All corners are in range by now.
     pub(super) fn finish(mut self, format: Format, unit: Option<Unit>) -> Result<Loaded, ReadError> {
-        if self.triangles.is_empty() {
-            return Err(ReadProblem::NoTriangles.into());
-        }
         self.end_part();
         if self.narrow_faces > 0 {
             self.warnings
                 .push(format!("{} with fewer than three corners left out", counted(self.narrow_faces, "face")));
+        }
+        self.drop_unplaced();
+        if self.triangles.is_empty() {
+            return Err(self.nothing().into());
         }
         if self.folded_polygons > 0 {
             self.warnings.push(format!(
@@ -107,18 +115,70 @@ impl Soup {
         self.triangles.shrink_to_fit();
         let mesh = TriMesh { positions: self.positions, triangles: self.triangles };
         let colours = self.colours.finish(&mesh, &mut self.warnings);
-        Ok(Loaded { mesh, colours, format, unit, parts: self.parts, warnings: self.warnings })
+        Ok(Loaded { mesh, colours, format, unit, parts: self.parts, negative: None, warnings: self.warnings })
+    }
+
+    /// The finished mesh of what is taken away from another; `None` when there is nothing of it.
+    pub(super) fn finish_negative(mut self) -> Option<Negative> {
+        self.end_part();
+        self.drop_unplaced();
+        let mesh = TriMesh { positions: self.positions, triangles: self.triangles };
+        (!mesh.triangles.is_empty()).then_some(Negative { mesh, parts: self.parts })
+    }
+
+    /// Why there is no triangle.
+    fn nothing(self) -> ReadProblem {
+        match (self.warnings.is_empty(), self.positions.len() + self.points) {
+            (false, _) => ReadProblem::NothingLeft(self.warnings.join("; ")),
+            (true, 0) => ReadProblem::NoTriangles,
+            (true, points) => ReadProblem::PointCloud { points },
+        }
+    }
+
+    /// Drops vertices with a coordinate that is no finite number, and the triangles at them.
+    fn drop_unplaced(&mut self) {
+        let mut left = 0;
+        let number = |p: &DVec3| {
+            let finite = p.is_finite();
+            left += u32::from(finite);
+            finite.then(|| left - 1)
+        };
+        let numbers: Vec<Option<u32>> = match self.positions.iter().all(|p| p.is_finite()) {
+            true => return,
+            false => self.positions.iter().map(number).collect(),
+        };
+        let renumbered = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| numbers[v as usize]);
+            Some([a?, b?, c?])
+        };
+        let triangles: Vec<Option<[u32; 3]>> = self.triangles.iter().map(renumbered).collect();
+        self.colours.keep(&numbers, &triangles);
+        let (points, faces) = (self.positions.len() - left as usize, triangles.iter().filter(|t| t.is_none()).count());
+        self.warnings.push(format!(
+            "{} with a coordinate that is no finite number left out, and {} there",
+            counted(points, "vertex"),
+            counted(faces + self.unplaced_faces, "face"),
+        ));
+        let mut kept = 0;
+        for part in &mut self.parts {
+            let start = kept;
+            kept += triangles[part.triangles.clone()].iter().flatten().count();
+            part.triangles = start..kept;
+        }
+        self.parts.retain(|part| !part.triangles.is_empty());
+        self.triangles = triangles.into_iter().flatten().collect();
+        self.positions.retain(|p| p.is_finite());
     }
 }
 
-/// `1 face`, `2 faces`, `3 meshes`.
+/// `1 face`, `2 faces`, `3 meshes`, `4 vertices`.
 pub(super) fn counted(count: usize, what: &str) -> String {
-    let ending = match (count, what.ends_with("sh")) {
-        (1, _) => "",
-        (_, true) => "es",
-        (_, false) => "s",
-    };
-    format!("{count} {what}{ending}")
+    match (count, what.strip_suffix("ex")) {
+        (1, _) => format!("1 {what}"),
+        (_, Some(stem)) => format!("{count} {stem}ices"),
+        _ if what.ends_with("sh") => format!("{count} {what}es"),
+        _ => format!("{count} {what}s"),
+    }
 }
 
 /// Vertices of formats that repeat them for every face, merged where the coordinates are equal

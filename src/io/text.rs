@@ -66,6 +66,7 @@ impl<'a> Iterator for Lines<'a> {
 }
 
 /// The words of a line, between white space.
+#[derive(Clone)]
 pub(super) struct Words<'a>(&'a [u8]);
 
 impl<'a> Words<'a> {

@@ -67,7 +67,11 @@ fn each_width(spans: &Spans, planes: &[Plane], mut visit: impl FnMut(bool, usize
 pub fn widths(spans: &[Spans], planes: &[Plane]) -> Lengths {
     let mut widths = Lengths::default();
     for spans in spans {
-        each_width(spans, planes, |gap, _, _, width| if gap { widths.gaps.push(width) } else { widths.spans.push(width) });
+        each_width(
+            spans,
+            planes,
+            |gap, _, _, width| if gap { widths.gaps.push(width) } else { widths.spans.push(width) },
+        );
     }
     widths.spans.sort_unstable_by(f64::total_cmp);
     widths.gaps.sort_unstable_by(f64::total_cmp);

@@ -178,8 +178,7 @@ impl Apart {
             .collect();
         let mut standing = Standing::default();
         for (operand, input) in operands.iter().enumerate() {
-            let own: Vec<(u32, bool)> =
-                kept.iter().copied().filter(|&(t, _)| soup.operands.of(t) == operand).collect();
+            let own: Vec<(u32, bool)> = kept.iter().copied().filter(|&(t, _)| soup.operands.of(t) == operand).collect();
             standing.add(operand, input, soup, &own, options.precision);
         }
         let tolerance = options.fit.map_or(0.0, |fit| fit.kept_tolerance);
@@ -232,9 +231,8 @@ impl Standing {
         let at = |v: u32| soup.mesh.positions[v as usize] + 0.0;
         let numbered = |t: u32| {
             let given = input.triangles[soup.source[t as usize] as usize];
-            soup.mesh.triangles[t as usize].map(|v| {
-                given.into_iter().find(|&g| input.positions[g as usize] + 0.0 == at(v)).unwrap_or(given[0])
-            })
+            soup.mesh.triangles[t as usize]
+                .map(|v| given.into_iter().find(|&g| input.positions[g as usize] + 0.0 == at(v)).unwrap_or(given[0]))
         };
         let mut number: FxHashMap<u32, u32> = FxHashMap::default();
         let mut one_each = true;
@@ -243,7 +241,9 @@ impl Standing {
                 one_each &= *number.entry(v).or_insert(given) == given;
             }
         }
-        let place = |v: u32| precision.of(if one_each { input.positions[number[&v] as usize] } else { soup.mesh.positions[v as usize] });
+        let place = |v: u32| {
+            precision.of(if one_each { input.positions[number[&v] as usize] } else { soup.mesh.positions[v as usize] })
+        };
         let first = self.mesh.positions.len() as u32;
         if one_each && own.len() == input.triangles.len() {
             self.mesh.positions.extend(input.positions.iter().map(|&p| precision.of(p)));

@@ -8,6 +8,7 @@ mod distance;
 mod field;
 mod frame;
 mod morphology;
+mod order;
 mod plan;
 mod prepare;
 mod rebuild;
@@ -264,7 +265,7 @@ pub fn repair(input: &TriMesh, options: &Options, progress: &Progress) -> Result
 }
 
 /// Evaluates a boolean expression over operands, each of which may be broken. Shells that are closed and touch nothing stay as they
-/// are; rays and voxels decide about the rest.
+/// are; rays and voxels decide about the rest. The order of the operands does not matter: what says the same has the same result.
 ///
 /// # Errors
 /// See [`Error`].
@@ -278,6 +279,18 @@ pub fn boolean(
     if needed > operands.len() {
         return Err(Error::MissingOperand { operand: needed - 1, given: operands.len() });
     }
+    order::in_order(operands, expression, options, |operands, expression, options| {
+        evaluate(operands, expression, options, progress)
+    })
+}
+
+/// [`boolean`] for operands in their order.
+fn evaluate(
+    operands: &[TriMesh],
+    expression: &Expression,
+    options: &Options,
+    progress: &Progress,
+) -> Result<Outcome, Error> {
     let frame = Frame::of(operands);
     let operands = &*frame.local(operands);
     let h = prepare::spacing(&prepare::bounds(operands)?, options.voxel)?;

@@ -105,7 +105,9 @@ impl Job<'_> {
         let crossing = solid::crossings(&spans, &distance, lid);
         let mut raw = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;
         if raw.mesh.triangles.is_empty() {
-            return Err(Error::NothingEnclosed { reason: solid::why_nothing(&spans, &lattice, hits, soup.operands.count()) });
+            return Err(Error::NothingEnclosed {
+                reason: solid::why_nothing(&spans, &lattice, hits, soup.operands.count()),
+            });
         }
         let lids = refine::lids(&mut raw, (&soup, &lattice), &winding, expression, progress)?;
         stages.begin("collapse")?;

@@ -4,7 +4,10 @@ use serde::Serialize;
 
 use super::apart::Apart;
 use super::stages::Stages;
-use super::{BackendReport, CanalReport, MorphologyReport, Outcome, StandingReport, ThickenReport, TopologyReport, solid, topology};
+use super::{
+    BackendReport, CanalReport, MorphologyReport, Outcome, StandingReport, ThickenReport, TopologyReport, solid,
+    topology,
+};
 
 use crate::fit::FitReport;
 use crate::orient::OrientReport;

@@ -4,8 +4,8 @@ use glam::IVec3;
 
 use super::{Error, LdiReport, Report, ThinRegion, ThinReport};
 use crate::contour::{Crossing, Edge, NO_TRIANGLE};
-use crate::lattice::{Grid, Lattice};
 use crate::fit::{NOT_KEPT, Surface};
+use crate::lattice::{Grid, Lattice};
 use crate::ldi::{Layers, Lengths, Spans, THIN, ThinPlace, edge_crossing, lengths, thin_places};
 use crate::mesh::Plane;
 use crate::vote::{Lid, Votes, doubts};
@@ -83,12 +83,7 @@ const MOST_REGIONS: usize = 10;
 const LEAST_RAYS: usize = 4;
 
 /// Where walls and gaps are thinner than the lattice holds, of those that were not kept as they are.
-pub(super) fn thin_regions(
-    spans: &[Spans],
-    planes: &[Plane],
-    surface: &Surface,
-    lattice: &Lattice,
-) -> Vec<ThinRegion> {
+pub(super) fn thin_regions(spans: &[Spans], planes: &[Plane], surface: &Surface, lattice: &Lattice) -> Vec<ThinRegion> {
     let mut kept = vec![false; planes.len()];
     surface.facets.iter().filter(|&&t| t != NOT_KEPT).for_each(|&t| kept[t as usize] = true);
     let region = |place: &ThinPlace| ThinRegion {

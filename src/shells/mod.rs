@@ -159,13 +159,7 @@ fn tallies(mesh: &TriMesh, edges: &Edges<'_>, of: &[u32], count: usize) -> Vec<T
     tallies
 }
 
-fn shell(
-    mesh: &TriMesh,
-    operands: &Operands,
-    triangles: Vec<u32>,
-    tally: &Tally,
-    fans: &[u32],
-) -> Shell {
+fn shell(mesh: &TriMesh, operands: &Operands, triangles: Vec<u32>, tally: &Tally, fans: &[u32]) -> Shell {
     let corners = || triangles.iter().map(|&t| mesh.corners(t as usize));
     let nothing = Bounds { min: glam::DVec3::ZERO, max: glam::DVec3::ZERO };
     let bounds = Bounds::of(corners().flatten()).unwrap_or(nothing);

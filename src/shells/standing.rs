@@ -200,7 +200,8 @@ impl Scene<'_> {
 
     fn fate(&self, k: usize, places: &[Surroundings], turns: &[Option<bool>]) -> Option<Fate> {
         let turned = turns[k]?;
-        let sign = |k: usize| turns[k].map(|turned| Self::sign(&self.shells[self.free[k]]) * if turned { -1 } else { 1 });
+        let sign =
+            |k: usize| turns[k].map(|turned| Self::sign(&self.shells[self.free[k]]) * if turned { -1 } else { 1 });
         let mut winding = places[k].others.clone()?;
         for &other in &places[k].within {
             winding[self.shells[self.free[other]].operand] += sign(other)?;

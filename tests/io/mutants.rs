@@ -100,9 +100,13 @@ proptest! {
         let (format, original) = &originals[which.index(originals.len())];
         let mut bytes = original.clone();
         changes.iter().for_each(|change| apply(&mut bytes, change));
-        // A model alone is packed, so that changes reach the reader of the XML.
+        // A model alone, or what a slicer says of one, is packed, so that changes reach the reader of the XML.
         if *format == Format::ThreeMf && !original.starts_with(b"PK") {
-            bytes = zipped(&[("3D/3dmodel.model", &bytes)]);
+            const MODEL: &[u8] = include_bytes!("../../fuzz/seeds/three_mf/roles.model");
+            bytes = match original.starts_with(b"<config") {
+                true => zipped(&[("3D/3dmodel.model", MODEL), ("Metadata/model_settings.config", &bytes)]),
+                false => zipped(&[("3D/3dmodel.model", &bytes)]),
+            };
         }
         for format in [Some(*format), None] {
             match read_bytes(&bytes, format, None) {

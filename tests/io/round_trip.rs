@@ -25,6 +25,11 @@ fn double() -> impl Strategy<Value = f64> + Clone {
     prop_oneof![prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL | prop::num::f64::ZERO, -1.0f64..1.0]
 }
 
+/// The places to the last bit: −0 is not 0.
+fn bits(mesh: &TriMesh) -> Vec<[u64; 3]> {
+    mesh.positions.iter().map(|p| p.to_array().map(f64::to_bits)).collect()
+}
+
 proptest! {
     #[test]
     fn singles_survive_every_format(mesh in soup(single())) {
@@ -36,6 +41,7 @@ proptest! {
             prop_assert_eq!(corners(&loaded.mesh), corners(&mesh), "{:?}", options);
             if options.format != Format::Stl {
                 prop_assert_eq!(&loaded.mesh, &mesh, "{:?}", options);
+                prop_assert_eq!(bits(&loaded.mesh), bits(&mesh), "{:?}", options);
             }
         }
     }
@@ -47,7 +53,9 @@ proptest! {
                 Format::Obj | Format::Off | Format::Ply | Format::ThreeMf => {
                     let bytes = encoded(&mesh, &options);
                     // An ASCII PLY of singles alone is told apart from one of doubles by its header.
-                    prop_assert_eq!(&read_bytes(&bytes, None, None).unwrap().mesh, &mesh, "{:?}", options);
+                    let loaded = read_bytes(&bytes, None, None).unwrap();
+                    prop_assert_eq!(&loaded.mesh, &mesh, "{:?}", options);
+                    prop_assert_eq!(bits(&loaded.mesh), bits(&mesh), "{:?}", options);
                 }
                 Format::Stl | Format::Glb | Format::Gltf => {}
             }

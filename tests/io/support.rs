@@ -14,6 +14,13 @@ pub fn assert_sound(loaded: &Loaded) {
     assert_eq!(loaded.parts.last().map(|p| p.triangles.end), Some(mesh.triangles.len()));
     assert!(loaded.parts.windows(2).all(|pair| pair[0].triangles.end == pair[1].triangles.start));
     assert!(loaded.parts.iter().all(|p| !p.triangles.is_empty()));
+    if let Some(negative) = &loaded.negative {
+        let mesh = &negative.mesh;
+        assert!(!mesh.triangles.is_empty() && mesh.positions.iter().all(|p| p.is_finite()));
+        assert!(mesh.triangles.iter().flatten().all(|&v| (v as usize) < mesh.positions.len()));
+        let counted: usize = negative.parts.iter().map(|part| part.triangles.len()).sum();
+        assert_eq!(counted, mesh.triangles.len());
+    }
     match &loaded.colours {
         None => {}
         Some(Colours::Faces(colours)) => assert_eq!(colours.len(), mesh.triangles.len()),

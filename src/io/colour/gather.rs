@@ -34,6 +34,11 @@ impl Levels {
         self.values.resize(which.end.max(self.values.len()), levels);
     }
 
+    /// Forgets the colours of what is not kept.
+    fn keep<T>(&mut self, kept: &[Option<T>]) {
+        keep(&mut self.values, kept);
+    }
+
     /// `count` colours, if there are any. Channels out of range become the nearest in range, and are counted in `odd`.
     fn finish(self, count: usize, odd: &mut usize) -> Option<Vec<Rgba>> {
         if self.values.is_empty() {
@@ -47,6 +52,12 @@ impl Levels {
         colours.resize(count, WHITE);
         Some(colours)
     }
+}
+
+/// The entries of `list`, which may be too short or too long, that are kept.
+fn keep<C, T>(list: &mut Vec<C>, kept: &[Option<T>]) {
+    let mut kept = kept.iter().map(Option::is_some);
+    list.retain(|_| kept.next().unwrap_or(false));
 }
 
 fn rgba(levels: [f32; 4], full: f32, odd: &mut usize) -> Rgba {
@@ -79,6 +90,13 @@ impl Gathered {
     pub(in crate::io) fn paint(&mut self, first: usize, corners: impl IntoIterator<Item = [Rgba; 3]>) {
         self.corners.resize(first.max(self.corners.len()), [WHITE; 3]);
         self.corners.extend(corners);
+    }
+
+    /// Forgets the colours of vertices and triangles that are not kept.
+    pub(in crate::io) fn keep<V, T>(&mut self, vertices: &[Option<V>], triangles: &[Option<T>]) {
+        self.vertices.keep(vertices);
+        self.faces.keep(triangles);
+        keep(&mut self.corners, triangles);
     }
 
     /// The colours of the finished mesh, `None` when the file has none.

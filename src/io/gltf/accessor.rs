@@ -107,6 +107,38 @@ pub(super) fn colours(
     vectors(root, buffers, index, Shape { size: channels * kind.size(), zero, decode }, allowance)
 }
 
+/// The translations, rotations or scales of instances behind accessor `index`, each of `width` numbers.
+pub(super) fn instance_values(
+    root: &Root,
+    buffers: &Buffers<'_>,
+    index: Index<Accessor>,
+    width: usize,
+    allowance: &mut Expansion,
+) -> Result<Vec<[f64; 4]>, ReadError> {
+    let fail = |problem| ReadError::item(item(index), problem);
+    let accessor = accessor(root, index)?;
+    let kind = component_type(accessor).map_err(fail)?;
+    let wanted = if width == 4 { Type::Vec4 } else { Type::Vec3 };
+    if !matches!(&accessor.type_, Checked::Valid(found) if *found == wanted) {
+        return Err(fail(ReadProblem::syntax(format!("values of type VEC{width} for instances"), "another type")));
+    }
+    // Rotations in integers must be normalised; a file that forgets to say so can mean nothing else.
+    let normalized = accessor.normalized || width == 4;
+    let decode = |field: &[u8]| {
+        let mut value = [0.0; 4];
+        for (x, part) in value.iter_mut().zip(field.chunks_exact(kind.size())) {
+            *x = component(part, kind, normalized);
+        }
+        value
+    };
+    vectors(root, buffers, index, Shape { size: width * kind.size(), zero: [0.0; 4], decode }, allowance)
+}
+
+/// How many values accessor `index` has, where it is there.
+pub(super) fn count(root: &Root, index: Index<Accessor>) -> usize {
+    root.get(index).map_or(0, |accessor| usize::try_from(accessor.count.0).unwrap_or(usize::MAX))
+}
+
 fn component_type(accessor: &Accessor) -> Result<ComponentType, ReadProblem> {
     match &accessor.component_type {
         Checked::Valid(kind) => Ok(kind.0),

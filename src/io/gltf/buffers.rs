@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
+use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
 use base64::Engine;
@@ -18,6 +19,9 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
 
+/// Bytes that all files beside a document may have together. A GLB file cannot hold more either.
+const MOST_BESIDE: u64 = 1 << 32;
+
 /// Every buffer, whole.
 pub(super) struct Buffers<'a> {
     /// Different contents: a file that several buffers name is read once.
@@ -31,6 +35,7 @@ impl<'a> Buffers<'a> {
         let mut contents = vec![Cow::Borrowed(binary.unwrap_or_default())];
         let mut buffers = Vec::with_capacity(root.buffers.len());
         let mut known = BTreeMap::new();
+        let mut left = MOST_BESIDE;
         for (i, buffer) in root.buffers.iter().enumerate() {
             let place = |problem| ReadError::item(format!("buffers[{i}]"), problem);
             let content = match &buffer.uri {
@@ -43,7 +48,10 @@ impl<'a> Buffers<'a> {
                 Some(uri) => match known.get(uri.as_str()) {
                     Some(&content) => content,
                     None => {
-                        contents.push(Cow::Owned(fetch(uri, path).map_err(place)?));
+                        let same = |other: &&gltf_json::Buffer| other.uri.as_deref() == Some(uri.as_str());
+                        let wanted = root.buffers.iter().filter(same).map(|other| other.byte_length.0).max();
+                        let content = fetch(uri, path, wanted.unwrap_or_default(), &mut left).map_err(place)?;
+                        contents.push(Cow::Owned(content));
                         known.insert(uri.as_str(), contents.len() - 1);
                         contents.len() - 1
                     }
@@ -86,7 +94,8 @@ pub(super) fn missing(index: usize, count: usize, what: &'static str) -> ReadPro
     ReadProblem::IndexOutOfRange { index: index as i64, count, what }
 }
 
-fn fetch(uri: &str, path: Option<&Path>) -> Result<Vec<u8>, ReadProblem> {
+/// What `uri` leads to: of a file at most the first `wanted` bytes, which are taken from those that are `left`.
+fn fetch(uri: &str, path: Option<&Path>, wanted: u64, left: &mut u64) -> Result<Vec<u8>, ReadProblem> {
     if let Some(data) = uri.strip_prefix("data:") {
         let (kind, data) =
             data.split_once(',').ok_or_else(|| ReadProblem::syntax("a comma in a data URI", quoted(uri.as_bytes())))?;
@@ -102,13 +111,36 @@ fn fetch(uri: &str, path: Option<&Path>) -> Result<Vec<u8>, ReadProblem> {
             "the buffer {uri} lies in another file, which a stream does not give; read it from its place, or use GLB"
         ))
     })?;
-    let file = file_beside(uri, base).ok_or_else(|| {
+    let elsewhere = || {
         let uri = quoted(uri.as_bytes());
         ReadProblem::Unsupported(format!(
             "the buffer {uri} is not a file in the folder of the glTF file, and is not read"
         ))
-    })?;
-    fs::read(&file).map_err(|e| ReadProblem::Io(std::io::Error::new(e.kind(), format!("{}: {e}", file.display()))))
+    };
+    let file = file_beside(uri, base).ok_or_else(elsewhere)?;
+    let failed = |e: std::io::Error| {
+        ReadProblem::Io(std::io::Error::new(e.kind(), format!("{}: {}", file.display(), plain(&e))))
+    };
+    // Links are followed to where they lead, and must not lead out of the folder; devices and pipes may never end.
+    let folder = base.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let place = file.canonicalize().map_err(failed)?;
+    if !place.starts_with(folder.canonicalize().map_err(failed)?) || !fs::metadata(&place).map_err(failed)?.is_file() {
+        return Err(elsewhere());
+    }
+    let mut bytes = Vec::new();
+    let cap = wanted.min(*left);
+    File::open(&place).and_then(|file| file.take(cap).read_to_end(&mut bytes)).map_err(failed)?;
+    if wanted > cap && bytes.len() as u64 == cap {
+        return Err(ReadProblem::TooLarge { what: "bytes of the files beside the document", limit: MOST_BESIDE });
+    }
+    *left -= bytes.len() as u64;
+    Ok(bytes)
+}
+
+/// "No such file or directory" without "(os error 2)".
+fn plain(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error").next().unwrap_or(&text).to_owned()
 }
 
 /// The file that `uri` names below the folder of `base`; `None` for an address elsewhere.

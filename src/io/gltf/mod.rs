@@ -3,6 +3,7 @@
 
 mod accessor;
 mod buffers;
+mod instancing;
 mod material;
 mod scene;
 mod write;
@@ -12,6 +13,7 @@ use std::path::Path;
 use gltf_json::Root;
 
 use self::buffers::Buffers;
+use self::instancing::Instancing;
 use super::error::{ReadError, ReadProblem};
 use super::soup::Expansion;
 use super::{Format, Loaded, Unit};
@@ -22,8 +24,11 @@ const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: &[u8] = b"JSON";
 const BINARY_CHUNK: &[u8] = b"BIN\0";
 
-/// Compressions that change how positions or indices are stored.
-const COMPRESSED: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
+/// Extensions that are read.
+const READ: [&str; 2] = [instancing::NAME, "KHR_mesh_quantization"];
+/// Extensions that begin so say how a surface looks and leave its shape alone.
+const OF_LOOKS: [&str; 7] =
+    ["KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_", "EXT_lights_", "MSFT_texture_", "EXT_materials_"];
 
 /// Reads a glTF file in JSON.
 pub(super) fn read_json(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, ReadError> {
@@ -44,8 +49,7 @@ pub(super) fn read_glb(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, Read
     }
     let version = word(4).ok_or_else(|| truncated("a version"))?;
     if version != 2 {
-        let problem = ReadProblem::Unsupported(format!("glTF version {version} is not read here, only version 2"));
-        return Err(ReadError::byte(4, problem));
+        return Err(ReadError::byte(4, other_version(&format!("version {version}"))));
     }
     let length = word(8).ok_or_else(|| truncated("a length"))? as usize;
     let whole = bytes.get(..length).ok_or_else(|| truncated(&format!("{length} bytes (bytes 8 to 11 say so)")))?;
@@ -76,15 +80,61 @@ fn read_document(
     if objects > limit {
         return Err(ReadProblem::TooLarge { what: "JSON objects", limit: limit as u64 }.into());
     }
+    check_version(json)?;
     let root: Root = gltf_json::deserialize::from_slice(json).map_err(|e| not_gltf(&e))?;
-    if let Some(name) = root.extensions_required.iter().find(|name| COMPRESSED.contains(&name.as_str())) {
-        let problem = ReadProblem::Unsupported(format!("the mesh data is compressed ({name}); export without it"));
-        return Err(ReadError::item("extensionsRequired", problem));
-    }
+    let looks = check_required(&root)?;
+    let instancing = Instancing::read(&root, json).map_err(|e| not_gltf(&e))?;
     let buffers = Buffers::load(&root, binary, path)?;
     let mut allowance = Expansion::for_input(length.max(buffers.bytes()) as u64);
-    let soup = scene::read(&root, &buffers, &mut allowance)?;
+    let mut soup = scene::read(&root, &instancing, &buffers, &mut allowance)?;
+    soup.warnings.extend(looks);
     soup.finish(format, Some(unit(&root)))
+}
+
+/// The version that a document states.
+#[derive(serde::Deserialize)]
+struct Stated {
+    asset: Option<StatedAsset>,
+}
+
+#[derive(serde::Deserialize)]
+struct StatedAsset {
+    version: Option<serde_json::Value>,
+}
+
+/// Refuses documents of version 1, which are laid out otherwise throughout.
+fn check_version(json: &[u8]) -> Result<(), ReadError> {
+    // What is no JSON at all is told by the reader of the whole.
+    let Ok(stated) = serde_json::from_slice::<Stated>(json) else { return Ok(()) };
+    let version = match stated.asset.and_then(|asset| asset.version) {
+        Some(serde_json::Value::String(version)) => format!("version {version}"),
+        Some(serde_json::Value::Number(version)) => format!("version {version}"),
+        _ => "a document without a version, as version 1.0 has it,".to_owned(),
+    };
+    if version.starts_with("version 2") { Ok(()) } else { Err(ReadError::item("asset", other_version(&version))) }
+}
+
+fn other_version(found: &str) -> ReadProblem {
+    ReadProblem::Unsupported(format!(
+        "glTF {found} is not read here, only version 2.0; convert it to glTF 2.0 or GLB, or export it again"
+    ))
+}
+
+/// Refuses a document that requires an extension that is not read. Returns a sentence on those that concern looks alone.
+fn check_required(root: &Root) -> Result<Option<String>, ReadError> {
+    let unread = |name: &&String| !READ.contains(&name.as_str());
+    let of_looks = |name: &str| OF_LOOKS.iter().any(|start| name.starts_with(start));
+    let unread: Vec<&str> = root.extensions_required.iter().filter(unread).map(String::as_str).collect();
+    if let Some(name) = unread.iter().find(|name| !of_looks(name)) {
+        let compressed = name.contains("compression");
+        let why = if compressed { "its mesh data is compressed and" } else { "it" };
+        let problem = ReadProblem::Unsupported(format!(
+            "{why} requires the extension {}, which is not read here; export without it",
+            super::text::quoted(name.as_bytes())
+        ));
+        return Err(ReadError::item("extensionsRequired", problem));
+    }
+    Ok((!unread.is_empty()).then(|| format!("required extensions on looks left out: {}", unread.join(", "))))
 }
 
 fn not_gltf(error: &gltf_json::Error) -> ReadError {

@@ -13,18 +13,26 @@ use super::super::error::{ReadError, ReadProblem};
 use super::super::soup::{Expansion, Soup, counted, too_many_vertices};
 use super::accessor;
 use super::buffers::{Buffers, missing};
+use super::instancing::Instancing;
 use super::material::Tint;
 
 /// The soup of the default scene, or of the first, or of every node, or of every mesh: whichever
 /// is there.
-pub(super) fn read(root: &Root, buffers: &Buffers<'_>, allowance: &mut Expansion) -> Result<Soup, ReadError> {
+pub(super) fn read(
+    root: &Root,
+    instancing: &Instancing,
+    buffers: &Buffers<'_>,
+    allowance: &mut Expansion,
+) -> Result<Soup, ReadError> {
     let mut reader = Reader {
         root,
+        instancing,
         buffers,
         allowance,
         soup: Soup::new(),
         used: vec![false; root.meshes.len()],
         other_primitives: 0,
+        points: 0,
         textured: BTreeSet::new(),
         posed: 0,
     };
@@ -63,11 +71,14 @@ fn tops(root: &Root) -> Result<Option<Vec<Index<Node>>>, ReadError> {
 
 struct Reader<'a, 'b> {
     root: &'a Root,
+    instancing: &'a Instancing,
     buffers: &'a Buffers<'a>,
     allowance: &'b mut Expansion,
     soup: Soup,
     used: Vec<bool>,
     other_primitives: usize,
+    /// Primitives of points.
+    points: usize,
     /// Materials with a texture.
     textured: BTreeSet<usize>,
     posed: usize,
@@ -99,7 +110,11 @@ impl Reader<'_, '_> {
             let place = parent * local_transform(node);
             if let Some(mesh) = node.mesh {
                 self.posed += usize::from(node.skin.is_some());
-                self.mesh(mesh, node.name.as_deref().unwrap_or_default(), &place)?;
+                let name = node.name.as_deref().unwrap_or_default();
+                match self.instancing.of(i, self.root, self.buffers, self.allowance)? {
+                    Some(copies) => copies.places().try_for_each(|copy| self.mesh(mesh, name, &(place * copy)))?,
+                    None => self.mesh(mesh, name, &place)?,
+                }
             }
             stack.extend(node.children.iter().flatten().rev().map(|&child| (child, place)));
         }
@@ -120,7 +135,7 @@ impl Reader<'_, '_> {
         for primitive in &mesh.primitives {
             let Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) = primitive.mode
             else {
-                self.other_primitives += 1;
+                self.passed_over(primitive);
                 continue;
             };
             self.posed += usize::from(primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()));
@@ -130,6 +145,17 @@ impl Reader<'_, '_> {
             })?;
         }
         Ok(())
+    }
+
+    /// Counts a primitive of points or lines.
+    fn passed_over(&mut self, primitive: &Primitive) {
+        match (primitive.mode, primitive.attributes.get(&Checked::Valid(Semantic::Positions))) {
+            (Checked::Valid(Mode::Points), Some(&positions)) => {
+                self.points += 1;
+                self.soup.points = self.soup.points.saturating_add(accessor::count(self.root, positions));
+            }
+            _ => self.other_primitives += 1,
+        }
     }
 
     fn primitive(
@@ -214,33 +240,27 @@ impl Reader<'_, '_> {
             return Err(too_many_vertices());
         }
         self.soup.positions.reserve(points.len());
+        // Multiplied by one, −0 would become 0.
+        let in_place = *place == DMat4::IDENTITY;
         for &point in &points {
-            let p = place.transform_point3(DVec3::from(point));
-            if !p.is_finite() {
-                let found = format!("{} (in the file: {})", p, DVec3::from(point));
-                return Err(ReadError::item(format!("accessors[{}]", index.value()), ReadProblem::NotFinite { found }));
-            }
-            self.soup.positions.push(p);
+            let point = DVec3::from(point);
+            self.soup.positions.push(if in_place { point } else { place.transform_point3(point) });
         }
         Ok((first as u32, points.len()))
     }
 
     fn finish(mut self) -> Soup {
+        // A file of points alone is named as such.
+        let points = if self.soup.triangles.is_empty() { 0 } else { self.points };
         let mut warn = |count: usize, what: &str, rest: &str| {
             if count > 0 {
                 self.soup.warnings.push(format!("{} {rest}", counted(count, what)));
             }
         };
-        warn(self.other_primitives, "primitive", "without triangles left out");
+        warn(self.other_primitives + points, "primitive", "without triangles left out");
         warn(self.textured.len(), "texture", "left out; colours of vertices and materials are read");
         warn(self.posed, "mesh", "with a skin or morph targets read in the pose they are stored in");
         warn(self.used.iter().filter(|used| !**used).count(), "mesh", "not part of the scene left out");
-        let instanced = self.root.extensions_used.iter().any(|name| name == "EXT_mesh_gpu_instancing");
-        warn(
-            usize::from(instanced),
-            "extension",
-            "left out: EXT_mesh_gpu_instancing, the copies it places are missing",
-        );
         self.soup
     }
 }

@@ -78,6 +78,14 @@ pub enum GridReadProblem {
         /// The limit.
         limit: u64,
     },
+    /// More memory than allowed; said before it is taken.
+    #[error("about {needed} bytes of memory would be needed, and {allowed} are allowed")]
+    Memory {
+        /// For the values and the file, bytes.
+        needed: u64,
+        /// The cap, bytes.
+        allowed: u64,
+    },
     /// A part of the format that is not read here, and what to do about it.
     #[error("{0}")]
     Unsupported(String),

@@ -78,6 +78,20 @@ pub struct Tile {
     pub value: f32,
 }
 
+impl GridValues {
+    /// Bytes of memory that the values take.
+    pub fn memory(&self) -> u64 {
+        let bytes = match self {
+            Self::Dense(values) => size_of_val(values.as_slice()),
+            Self::Sparse(values) => {
+                let block = size_of::<Block>() + size_of::<BlockValues>();
+                values.blocks.len() * block + size_of_val(values.tiles.as_slice())
+            }
+        };
+        bytes as u64
+    }
+}
+
 impl GridFile {
     /// The value at a voxel, model units; `None` outside the lattice.
     pub fn at(&self, voxel: IVec3) -> Option<f32> {

@@ -20,7 +20,7 @@ pub use error::{GridReadError, GridReadProblem};
 pub use file::{BLOCK_SIDE, BLOCK_VOXELS, Block, BlockValues, GridFile, GridValues, SparseValues, Tile};
 use file::{all_finite, one_spacing, spacing_of_axes};
 pub use format::{GridFormat, UnknownGridFormat};
-pub use read::{read_grid, read_grid_bytes};
+pub use read::{read_grid, read_grid_bytes, read_grid_within};
 
 use super::save::save_bytes;
 use super::{Unit, WriteError};

@@ -1,13 +1,43 @@
 //! Numbers as files have them: integers and floats of any width and byte order, as text, and compressed.
 
-use std::io::Read;
+use std::io::{self, Read};
 
 use super::error::{GridReadProblem, shown};
 
-/// Unpacked bytes that any file may have.
-const ALWAYS_ALLOWED: usize = 64 << 20;
-/// Beyond that, unpacked bytes for each byte of the file.
+/// Bytes of memory that the values of any file may take.
+const ALWAYS_ALLOWED: usize = 256 << 20;
+/// Beyond that, bytes of memory for each byte of the file.
 const LARGEST_RATIO: usize = 50;
+
+/// What a file may take.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cap {
+    /// Bytes of the file.
+    pub(super) length: usize,
+    /// Bytes of memory for the file and its values, if there is a limit.
+    pub(super) allowed: Option<u64>,
+}
+
+impl Cap {
+    /// Refuses values of so many `bytes`, by what the file's length justifies; and by what is allowed those, the file, and
+    /// the bytes `besides` that are held while it is read.
+    pub(super) fn check(self, bytes: usize, besides: usize) -> Result<(), GridReadProblem> {
+        let limit = ALWAYS_ALLOWED.max(self.length.saturating_mul(LARGEST_RATIO));
+        let needed = self.length.saturating_add(bytes).saturating_add(besides) as u64;
+        match self.allowed {
+            Some(allowed) if needed > allowed => Err(GridReadProblem::Memory { needed, allowed }),
+            _ if bytes > limit => {
+                Err(GridReadProblem::TooLarge { what: "the bytes of its values", limit: limit as u64 })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The same for `count` values.
+    pub(super) fn check_values(self, count: usize, besides: usize) -> Result<(), GridReadProblem> {
+        self.check(count.saturating_mul(size_of::<f32>()), besides)
+    }
+}
 
 /// A kind of number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,10 +137,8 @@ pub(super) fn from_text(text: &[u8], count: usize) -> Result<Vec<f32>, GridReadP
     }
 }
 
-/// The first `wanted` bytes that `packed` unpacks into, where the file has `file_length` bytes. Memory grows with what
-/// is really there.
-pub(super) fn unpack(packed: impl Read, wanted: usize, file_length: usize) -> Result<Vec<u8>, GridReadProblem> {
-    check_unpacked(wanted, file_length)?;
+/// The first `wanted` bytes that `packed` unpacks into. Memory grows with what is really there.
+pub(super) fn unpack(packed: impl Read, wanted: usize) -> Result<Vec<u8>, GridReadProblem> {
     let mut bytes = Vec::new();
     let read = packed.take(wanted as u64).read_to_end(&mut bytes);
     read.map_err(|error| GridReadProblem::syntax("compressed numbers", error.to_string()))?;
@@ -123,13 +151,38 @@ pub(super) fn unpack(packed: impl Read, wanted: usize, file_length: usize) -> Re
     }
 }
 
-/// Refuses more unpacked bytes than a file of `file_length` bytes may have.
-pub(super) fn check_unpacked(bytes: usize, file_length: usize) -> Result<(), GridReadProblem> {
-    let limit = ALWAYS_ALLOWED.max(file_length.saturating_mul(LARGEST_RATIO));
-    match bytes <= limit {
-        true => Ok(()),
-        false => Err(GridReadProblem::TooLarge { what: "the unpacked bytes", limit: limit as u64 }),
+/// The `count` numbers after the first `skipped` bytes that `packed` unpacks into, piece by piece.
+pub(super) fn unpack_numbers(
+    mut packed: impl Read,
+    skipped: u64,
+    count: usize,
+    decode: impl Fn(&[u8]) -> Vec<f32>,
+    width: usize,
+) -> Result<Vec<f32>, GridReadProblem> {
+    const PIECE: usize = 1 << 13;
+    let broken = |error: io::Error| GridReadProblem::syntax("compressed numbers", error.to_string());
+    let missing = |found: usize| {
+        GridReadProblem::truncated(format!("{count} numbers after unpacking"), format!("there are {found}"))
+    };
+    let passed = io::copy(&mut packed.by_ref().take(skipped), &mut io::sink()).map_err(broken)?;
+    if passed < skipped {
+        return Err(missing(0));
     }
+    let (mut values, mut piece) = (Vec::new(), Vec::new());
+    while values.len() < count {
+        let wanted = PIECE.min(count - values.len()) * width;
+        piece.clear();
+        packed.by_ref().take(wanted as u64).read_to_end(&mut piece).map_err(broken)?;
+        if piece.len() < wanted {
+            return Err(missing(values.len() + piece.len() / width));
+        }
+        if values.is_empty() && count > PIECE {
+            // All at once only when the first piece is there, and never twice the room that is needed.
+            values.reserve_exact(count);
+        }
+        values.extend(decode(&piece));
+    }
+    Ok(values)
 }
 
 #[cfg(test)]

@@ -62,11 +62,7 @@ fn read_vertices(element: &Element, rows: &mut Rows<'_>, soup: &mut Soup) -> Res
     let channels = Channels::of(element, &mut soup.colours.vertices, &mut soup.warnings);
     for vertex in 0..element.count {
         rows.next(element)?;
-        let p = DVec3::from(axes.map(|axis| rows.scalar(axis)));
-        if !p.is_finite() {
-            return Err(rows.fail(ReadProblem::NotFinite { found: p.to_string() }));
-        }
-        soup.positions.push(p);
+        soup.positions.push(DVec3::from(axes.map(|axis| rows.scalar(axis))));
         if let Some(channels) = &channels {
             soup.colours.vertices.put(vertex..vertex + 1, channels.levels(rows));
         }

@@ -5,7 +5,7 @@ use std::io::Write;
 use glam::DVec3;
 
 use super::super::error::{ReadError, ReadProblem, WriteError};
-use super::super::soup::{Soup, Welder};
+use super::super::soup::{Soup, Welder, counted};
 use super::super::text::{Lines, TextOut, Words, number, quoted};
 use super::normal;
 use crate::mesh::TriMesh;
@@ -14,15 +14,35 @@ use crate::mesh::TriMesh;
 struct Stream<'a> {
     lines: Lines<'a>,
     words: Words<'a>,
+    /// Whether the last word handed out is the first of its line.
+    first: bool,
+    /// Words that follow a statement on its line and mean nothing.
+    trailing: usize,
 }
+
+/// The words that mean something.
+const KEYWORDS: [&str; 9] = ["facet", "normal", "outer", "loop", "vertex", "endloop", "endfacet", "solid", "endsolid"];
 
 impl<'a> Stream<'a> {
     fn next(&mut self) -> Option<&'a [u8]> {
+        self.first = false;
         loop {
             if let Some(word) = self.words.next() {
                 return Some(word);
             }
             self.words = Words::new(self.lines.next()?.1);
+            self.first = true;
+        }
+    }
+
+    /// The next word that begins a line or means something.
+    fn next_statement(&mut self) -> Option<&'a [u8]> {
+        loop {
+            let word = self.next()?;
+            if self.first || KEYWORDS.iter().any(|keyword| is(word, keyword)) {
+                return Some(word);
+            }
+            self.trailing += 1;
         }
     }
 
@@ -34,8 +54,14 @@ impl<'a> Stream<'a> {
         ReadError::line(self.lines.number(), problem)
     }
 
-    /// The next word; the end of the file is an error that says what was `expected`.
+    /// The next statement; the end of the file is an error that says what was `expected`.
     fn word(&mut self, expected: &str) -> Result<&'a [u8], ReadError> {
+        let word = self.next_statement();
+        word.ok_or_else(|| self.fail(ReadProblem::truncated(expected, "the file ends within a facet")))
+    }
+
+    /// The next word, whatever it means.
+    fn any_word(&mut self, expected: &str) -> Result<&'a [u8], ReadError> {
         let word = self.next();
         word.ok_or_else(|| self.fail(ReadProblem::truncated(expected, "the file ends within a facet")))
     }
@@ -49,11 +75,8 @@ impl<'a> Stream<'a> {
     fn point(&mut self) -> Result<DVec3, ReadError> {
         let mut p = DVec3::ZERO;
         for k in 0..3 {
-            let word = self.word("a coordinate")?;
+            let word = self.any_word("a coordinate")?;
             p[k] = number(word).ok_or_else(|| self.fail(ReadProblem::syntax("a coordinate", quoted(word))))?;
-            if !p[k].is_finite() {
-                return Err(self.fail(ReadProblem::NotFinite { found: quoted(word) }));
-            }
         }
         Ok(p)
     }
@@ -61,9 +84,10 @@ impl<'a> Stream<'a> {
     /// What follows the word `facet`: the normal is passed over, whatever it is written as.
     fn facet(&mut self, corners: &mut Vec<DVec3>) -> Result<(), ReadError> {
         corners.clear();
-        // `normal` and three numbers, at most.
-        for _ in 0..5 {
-            let word = self.word("`outer loop`")?;
+        // `normal`, three numbers, and what may trail.
+        const MOST: usize = 20;
+        for _ in 0..MOST {
+            let word = self.any_word("`outer loop`")?;
             if is(word, "outer") {
                 break;
             }
@@ -94,13 +118,13 @@ fn is(word: &[u8], keyword: &str) -> bool {
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
-    let mut stream = Stream { lines: Lines::new(bytes), words: Words::new(b"") };
+    let mut stream = Stream { lines: Lines::new(bytes), words: Words::new(b""), first: false, trailing: 0 };
     let mut soup = Soup::new();
     // About 250 bytes a facet in files as they are.
     let mut welder = Welder::for_triangles(bytes.len() / 250);
     let (mut corners, mut face) = (Vec::new(), Vec::new());
     let mut open = false;
-    while let Some(word) = stream.next() {
+    while let Some(word) = stream.next_statement() {
         if is(word, "facet") {
             stream.facet(&mut corners)?;
             face.clear();
@@ -117,6 +141,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
         } else {
             return Err(stream.fail(ReadProblem::syntax("`facet`, `solid` or `endsolid`", quoted(word))));
         }
+    }
+    if stream.trailing > 0 {
+        soup.warnings.push(format!("{} after the end of a statement left out", counted(stream.trailing, "word")));
     }
     if open {
         soup.warnings.push("no `endsolid` at the end: facets may be missing".into());

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use glam::{DVec3, Vec3};
 
-use super::super::error::{Place, ReadError, ReadProblem, WriteError, WriteProblem};
+use super::super::error::{ReadError, ReadProblem, WriteError, WriteProblem};
 use super::super::soup::{Soup, Welder, counted};
 use super::normal;
 use crate::io::Format;
@@ -72,16 +72,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
     let facets = facets_to_read(bytes, &mut soup)?;
     let mut welder = Welder::for_triangles(facets);
     soup.triangles.reserve_exact(facets);
-    for (i, facet) in bytes[PREFIX..].chunks_exact(FACET).take(facets).enumerate() {
+    for facet in bytes[PREFIX..].chunks_exact(FACET).take(facets) {
         let mut corners = [0; 3];
         // The normal, 12 bytes, is recomputed by whoever needs it.
         for (k, corner) in corners.iter_mut().enumerate() {
             let place = 12 + 12 * k;
             let p = point(&facet[place..place + 12]);
-            if !p.is_finite() {
-                let byte = (PREFIX + i * FACET + place) as u64;
-                return Err(ReadError::at(Place::Byte(byte), ReadProblem::NotFinite { found: p.to_string() }));
-            }
             *corner = welder.vertex(p, &mut soup.positions)?;
         }
         soup.triangles.push(corners);

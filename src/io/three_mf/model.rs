@@ -9,7 +9,9 @@ use quick_xml::events::{BytesStart, Event};
 use super::super::colour::Rgba;
 use super::super::error::ReadProblem;
 use super::super::text::{Words, integer, number, quoted};
+use super::extensions::Extensions;
 use super::package::{Xml, XmlError};
+use super::roles::Role;
 use crate::io::Unit;
 
 /// A model file as read.
@@ -22,6 +24,7 @@ pub(super) struct Model {
     pub(super) groups: BTreeMap<u32, Vec<Rgba>>,
     /// What the build places.
     pub(super) items: Vec<Placed>,
+    pub(super) extensions: Extensions,
 }
 
 impl Model {
@@ -35,7 +38,6 @@ impl Model {
 }
 
 /// A mesh, or components, or both.
-#[derive(Default)]
 pub(super) struct Object {
     pub(super) name: String,
     pub(super) vertices: Vec<DVec3>,
@@ -46,6 +48,20 @@ pub(super) struct Object {
     /// What the triangles that have nothing of their own get.
     pub(super) default: Option<Property>,
     pub(super) components: Vec<Placed>,
+    /// What the object is for, by its type and its settings.
+    pub(super) role: Role,
+}
+
+impl Object {
+    fn add_triangle(&mut self, element: &BytesStart<'_>) -> Result<(), ReadProblem> {
+        let triangle = triangle(element, self.vertices.len())?;
+        if let Some(property) = property(element, self.default)? {
+            self.properties.resize(self.triangles.len(), None);
+            self.properties.push(Some(property));
+        }
+        self.triangles.push(triangle);
+        Ok(())
+    }
 }
 
 /// Entries of a group, for the three corners of a triangle. The group may be of another kind than colours, or absent.
@@ -72,38 +88,45 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
         objects: BTreeMap::new(),
         groups: BTreeMap::new(),
         items: Vec::new(),
+        extensions: Extensions::default(),
     };
     let mut object: Option<(u32, Object)> = None;
     let mut group: Option<(u32, Vec<Rgba>)> = None;
     let mut in_mesh = false;
     let mut whole = false;
+    let mut setting = None;
     loop {
         match xml.event()? {
             Event::Eof if whole => return Ok(model),
             Event::Eof => return Err(ReadProblem::truncated("`</model>`", "the file ends").into()),
             Event::Start(e) => match (e.local_name().as_ref(), &mut object) {
-                (b"model", _) => model.unit = unit(&e)?,
-                (b"object", _) => object = Some((id(&e, b"id")?, new_object(&e)?)),
-                (b"basematerials" | b"colorgroup", _) => group = Some((id(&e, b"id")?, Vec::new())),
-                (b"mesh", Some(_)) => in_mesh = true,
                 (b"vertex", Some((_, object))) if in_mesh => object.vertices.push(vertex(&e)?),
-                (b"triangle", Some((_, object))) if in_mesh => {
-                    let triangle = triangle(&e, object.vertices.len())?;
-                    if let Some(property) = property(&e, object.default)? {
-                        object.properties.resize(object.triangles.len(), None);
-                        object.properties.push(Some(property));
+                (b"triangle", Some((_, object))) if in_mesh => object.add_triangle(&e)?,
+                (name, object) => {
+                    model.extensions.meet(&e);
+                    match (name, object) {
+                        (b"model", _) => model.unit = unit(&e)?,
+                        (b"object", object) => *object = Some((id(&e, b"id")?, new_object(&e)?)),
+                        (b"basematerials" | b"colorgroup", _) => group = Some((id(&e, b"id")?, Vec::new())),
+                        (b"mesh", Some(_)) => in_mesh = true,
+                        (b"metadata", Some(_)) => setting = attribute(&e, b"name").and_then(|n| Role::of_cura(&n)),
+                        (b"component", Some((_, object))) => object.components.push(placed(&e)?),
+                        (b"item", None) => model.items.push(placed(&e)?),
+                        (kind @ (b"base" | b"color"), _) => {
+                            if let Some((_, colours)) = &mut group {
+                                colours.push(colour(&e, if kind == b"base" { b"displaycolor" } else { b"color" })?);
+                            }
+                        }
+                        _ => {}
                     }
-                    object.triangles.push(triangle);
                 }
-                (b"component", Some((_, object))) => object.components.push(placed(&e)?),
-                (b"item", None) => model.items.push(placed(&e)?),
-                (kind @ (b"base" | b"color"), _) => {
-                    if let Some((_, colours)) = &mut group {
-                        colours.push(colour(&e, if kind == b"base" { b"displaycolor" } else { b"color" })?);
-                    }
-                }
-                _ => {}
             },
+            Event::Text(value) => {
+                let on = [b"true".as_slice(), b"1"].iter().any(|on| value.trim_ascii().eq_ignore_ascii_case(on));
+                if let (Some(role), Some((_, object))) = (setting.take().filter(|_| on), &mut object) {
+                    object.role = role;
+                }
+            }
             Event::End(e) => match e.local_name().as_ref() {
                 b"mesh" => in_mesh = false,
                 b"object" => {
@@ -168,7 +191,15 @@ fn new_object(element: &BytesStart<'_>) -> Result<Object, ReadProblem> {
     let number = |name| attribute(element, name).map(|value| whole(&value, "the number of a property")).transpose();
     let entry = number(b"pindex")?.unwrap_or_default();
     let default = number(b"pid")?.map(|group| Property { group, entries: [entry; 3] });
-    Ok(Object { name: name_of(element), default, ..Object::default() })
+    Ok(Object {
+        name: name_of(element),
+        vertices: Vec::new(),
+        triangles: Vec::new(),
+        properties: Vec::new(),
+        default,
+        components: Vec::new(),
+        role: attribute(element, b"type").map_or(Role::Part, |kind| Role::of_type(kind.trim_ascii())),
+    })
 }
 
 /// What a triangle has of its own: an entry for each corner, or one for all, of a group that the object names if the triangle
@@ -208,7 +239,11 @@ fn colour(element: &BytesStart<'_>, name: &[u8]) -> Result<Rgba, ReadProblem> {
 }
 
 fn coordinate(value: &[u8]) -> Result<f64, ReadProblem> {
-    let found = number(value.trim_ascii()).ok_or_else(|| ReadProblem::syntax("a coordinate", quoted(value)))?;
+    number(value.trim_ascii()).ok_or_else(|| ReadProblem::syntax("a coordinate", quoted(value)))
+}
+
+fn finite(value: &[u8]) -> Result<f64, ReadProblem> {
+    let found = coordinate(value)?;
     if found.is_finite() { Ok(found) } else { Err(ReadProblem::NotFinite { found: quoted(value) }) }
 }
 
@@ -243,7 +278,7 @@ fn placed(element: &BytesStart<'_>) -> Result<Placed, ReadProblem> {
 
 /// Twelve numbers: the images of the three axes, then of the origin.
 fn transform(value: &[u8]) -> Result<DAffine3, ReadProblem> {
-    let numbers = Words::new(value).map(coordinate).collect::<Result<Vec<_>, _>>()?;
+    let numbers = Words::new(value).map(finite).collect::<Result<Vec<_>, _>>()?;
     let numbers: [f64; 12] =
         numbers.try_into().map_err(|_| ReadProblem::syntax("twelve numbers of a transform", quoted(value)))?;
     Ok(DAffine3::from_cols_array(&numbers))

@@ -7,6 +7,7 @@ use zip::ZipArchive;
 use zip::result::ZipError;
 
 use super::super::error::{Place, ReadError, ReadProblem};
+use super::super::text::quoted;
 use super::model::{self, Model};
 
 /// Unpacked bytes that any package may have.
@@ -45,13 +46,49 @@ impl<'a> Package<'a> {
         named
             .filter(|name| self.find(name).is_some())
             .or_else(|| usual().or_else(any).map(str::to_owned))
-            .ok_or_else(|| ReadError::item("package", ReadProblem::syntax("a 3D model (3D/3dmodel.model)", "none")))
+            .ok_or_else(|| ReadError::item("package", self.no_model()))
+    }
+
+    /// What the package holds in place of a model.
+    fn no_model(&self) -> ReadProblem {
+        const SHOWN: usize = 3;
+        let has = |start: &str| self.archive.file_names().any(|name| name.starts_with(start));
+        if ["word/", "xl/", "ppt/"].into_iter().any(has) {
+            return ReadProblem::Unsupported(
+                "an Office document, not a 3MF package; give the file of the model".into(),
+            );
+        }
+        let mut names: Vec<&str> = self.archive.file_names().filter(|name| !name.ends_with('/')).collect();
+        names.sort_unstable();
+        let more = if names.len() > SHOWN { ", …" } else { "" };
+        let shown: Vec<String> = names.iter().take(SHOWN).map(|name| quoted(name.as_bytes())).collect();
+        let held = if names.is_empty() { "nothing".to_owned() } else { shown.join(", ") + more };
+        ReadProblem::Unsupported(format!(
+            "a ZIP archive without a 3D model (3D/3dmodel.model), so no 3MF package; it holds {held}: unpack it and give the mesh in it"
+        ))
+    }
+
+    /// The files whose name, in small letters, is `wanted`, in order.
+    pub(super) fn files(&self, wanted: impl Fn(&str) -> bool) -> Vec<String> {
+        let names = self.archive.file_names().filter(|name| wanted(&name.to_ascii_lowercase()));
+        let mut names: Vec<String> = names.map(str::to_owned).collect();
+        names.sort_unstable();
+        names
+    }
+
+    /// What `parse` makes of the file `name`.
+    pub(super) fn read_xml<T>(
+        &mut self,
+        name: &str,
+        parse: impl FnOnce(&mut Xml<'_>) -> Result<T, XmlError>,
+    ) -> Result<T, ReadError> {
+        let none = || ReadError::item("package", ReadProblem::syntax(format!("the file {name}"), "none"));
+        let index = self.find(name).ok_or_else(none)?;
+        self.unpack(index, name, parse)
     }
 
     pub(super) fn read_model(&mut self, name: &str) -> Result<Model, ReadError> {
-        let none = || ReadError::item("package", ReadProblem::syntax(format!("the model {name}"), "none"));
-        let index = self.find(name).ok_or_else(none)?;
-        self.unpack(index, name, |reader| model::parse(reader, name))
+        self.read_xml(name, |reader| model::parse(reader, name))
     }
 
     /// Names of a package start with a slash in references and without in the archive, and do not

@@ -47,6 +47,14 @@ pub struct Built {
 }
 
 impl Operand {
+    /// Bytes of memory that its lattice takes; none for a mesh.
+    pub fn memory(&self) -> u64 {
+        match self {
+            Self::Mesh(_) => 0,
+            Self::Grid(grid) => grid.memory(),
+        }
+    }
+
     /// The box around it, model units.
     pub fn bounds(&self) -> Option<Bounds> {
         match self {

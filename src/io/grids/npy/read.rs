@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::super::error::{GridReadError, GridReadProblem, shown};
-use super::super::numbers::{Kind, count};
+use super::super::numbers::{Cap, Kind, count};
 use super::super::{GridFile, GridFormat, GridValues, all_finite};
 
 /// What the header says.
@@ -16,7 +16,7 @@ struct Header {
     data: usize,
 }
 
-pub(in crate::io::grids) fn read(bytes: &[u8]) -> Result<GridFile, GridReadError> {
+pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, GridReadError> {
     let header = header(bytes)?;
     let dims = header.dims;
     let width = header.kind.width();
@@ -30,6 +30,9 @@ pub(in crate::io::grids) fn read(bytes: &[u8]) -> Result<GridFile, GridReadError
     if there > wanted {
         warnings.push(format!("{} bytes after the array were left out", there - wanted));
     }
+    // Turned, the values are there twice for a while.
+    let turned_too = if header.fortran { 0 } else { size_of::<f32>() * (wanted / width) };
+    cap.check_values(wanted / width, turned_too).map_err(|e| e.at_byte(header.data))?;
     let values = header.kind.decode(&bytes[header.data..header.data + wanted], header.big);
     let values = if header.fortran { values } else { turned(&values, dims) };
     all_finite(&values, dims)?;

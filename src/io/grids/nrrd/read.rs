@@ -4,12 +4,12 @@ use flate2::read::MultiGzDecoder;
 use glam::DVec3;
 
 use super::super::error::{GridReadError, GridReadProblem, shown};
-use super::super::numbers::{self, Kind};
+use super::super::numbers::{self, Cap, Kind};
 use super::super::{GridFile, GridFormat, GridValues, all_finite, one_spacing, spacing_of_axes};
 use super::header::{Field, Header};
 use crate::io::Unit;
 
-pub(in crate::io::grids) fn read(bytes: &[u8]) -> Result<GridFile, GridReadError> {
+pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, GridReadError> {
     let header = Header::new(bytes)?;
     if let Some(field) = header.field(&["data file", "datafile"]) {
         let text =
@@ -17,7 +17,7 @@ pub(in crate::io::grids) fn read(bytes: &[u8]) -> Result<GridFile, GridReadError
         return Err(GridReadProblem::unsupported(text).at_line(field.line));
     }
     let dims = dims(&header)?;
-    let mut values = values(bytes, &header, dims)?;
+    let mut values = values(bytes, &header, dims, cap)?;
     all_finite(&values, dims)?;
     let mut warnings = Vec::new();
     if header.key("sign").is_some_and(|sign| sign.starts_with("positive inside")) {
@@ -52,7 +52,7 @@ fn dims(header: &Header) -> Result<[usize; 3], GridReadError> {
     dims.filter(|dims| !dims.contains(&0)).ok_or_else(|| sizes.wrong("three sizes above zero"))
 }
 
-fn values(bytes: &[u8], header: &Header, dims: [usize; 3]) -> Result<Vec<f32>, GridReadError> {
+fn values(bytes: &[u8], header: &Header, dims: [usize; 3], cap: Cap) -> Result<Vec<f32>, GridReadError> {
     let kind = kind(header.needed(&["type"])?)?;
     let end = |problem: GridReadProblem| problem.at_byte(bytes.len());
     let length = numbers::count(dims).and_then(|count| count.checked_mul(kind.width()));
@@ -61,41 +61,46 @@ fn values(bytes: &[u8], header: &Header, dims: [usize; 3]) -> Result<Vec<f32>, G
     let data = after_lines(&bytes[header.data..], skip(header, &["line skip", "lineskip"])?);
     let skipped = skip(header, &["byte skip", "byteskip"])?;
     let encoding = header.needed(&["encoding"])?;
-    let packed = match encoding.text.to_ascii_lowercase().as_str() {
-        "raw" => None,
+    let count = length / kind.width();
+    match encoding.text.to_ascii_lowercase().as_str() {
+        "raw" => {
+            let raw = raw(data, skipped, length).ok_or_else(|| {
+                let expected = format!("{length} bytes of numbers");
+                end(GridReadProblem::truncated(expected, format!("{} bytes are there", data.len())))
+            })?;
+            let big = big(header, kind)?;
+            cap.check_values(count, 0).map_err(|e| e.at_byte(header.data))?;
+            Ok(kind.decode(raw, big))
+        }
         "gz" | "gzip" => {
-            let before = usize::try_from(skipped).map_err(|_| encoding.wrong("`byte skip` of 0 or more with gzip"))?;
-            let wanted = length.checked_add(before).ok_or_else(|| encoding.wrong("a smaller `byte skip`"))?;
-            let mut unpacked =
-                numbers::unpack(MultiGzDecoder::new(data), wanted, bytes.len()).map_err(|e| e.at_byte(header.data))?;
-            unpacked.drain(..before);
-            Some(unpacked)
+            let skipped = u64::try_from(skipped).map_err(|_| encoding.wrong("`byte skip` of 0 or more with gzip"))?;
+            let big = big(header, kind)?;
+            let decode = |bytes: &[u8]| kind.decode(bytes, big);
+            let values = cap.check_values(count, 0).and_then(|()| {
+                numbers::unpack_numbers(MultiGzDecoder::new(data), skipped, count, decode, kind.width())
+            });
+            values.map_err(|e| e.at_byte(header.data))
         }
         "txt" | "text" | "ascii" => {
-            return numbers::from_text(data, length / kind.width()).map_err(|e| e.at_byte(header.data));
+            let values = cap.check_values(count, 0).and_then(|()| numbers::from_text(data, count));
+            values.map_err(|e| e.at_byte(header.data))
         }
         other => {
             let text = format!("the encoding {} is not read here: save it raw or as gzip", shown(other.as_bytes()));
-            return Err(GridReadProblem::Unsupported(text).at_line(encoding.line));
+            Err(GridReadProblem::Unsupported(text).at_line(encoding.line))
         }
-    };
-    let raw = match &packed {
-        Some(unpacked) => unpacked.as_slice(),
-        None => raw(data, skipped, length).ok_or_else(|| {
-            end(GridReadProblem::truncated(
-                format!("{length} bytes of numbers"),
-                format!("{} bytes are there", data.len()),
-            ))
-        })?,
-    };
-    let big = match header.field(&["endian"]) {
-        Some(Field { text: "big", .. }) => true,
-        Some(Field { text: "little", .. }) => false,
-        None if kind.width() == 1 => false,
-        Some(field) => return Err(field.wrong("`little` or `big`")),
-        None => return Err(GridReadProblem::syntax("the field `endian`", "none").at_item("header")),
-    };
-    Ok(kind.decode(raw, big))
+    }
+}
+
+/// Whether the highest byte comes first.
+fn big(header: &Header, kind: Kind) -> Result<bool, GridReadError> {
+    match header.field(&["endian"]) {
+        Some(Field { text: "big", .. }) => Ok(true),
+        Some(Field { text: "little", .. }) => Ok(false),
+        None if kind.width() == 1 => Ok(false),
+        Some(field) => Err(field.wrong("`little` or `big`")),
+        None => Err(GridReadProblem::syntax("the field `endian`", "none").at_item("header")),
+    }
 }
 
 /// The numbers of raw data; a skip of -1 means that they end the file.

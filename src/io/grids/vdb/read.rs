@@ -3,17 +3,18 @@
 use glam::IVec3;
 
 use super::super::error::{GridReadError, GridReadProblem, shown};
+use super::super::numbers::Cap;
 use super::super::{GridFile, GridFormat, GridValues, SparseValues};
 use super::header::{self, Grid, is_level_set};
 use super::values::Format;
 use super::{LATTICE_DIMS, transform, tree};
 
-pub(in crate::io::grids) fn read(bytes: &[u8]) -> Result<GridFile, GridReadError> {
+pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, GridReadError> {
     let (mut grid, others) = header::grid(bytes)?;
     let mut cursor = grid.rest.clone();
     let (origin, spacing) = transform::read(&mut cursor)?;
     let format = Format { number: grid.number, stored: grid.stored, compression: grid.compression, background: 0.0 };
-    let mut values = tree::read(&mut cursor, grid.buffers.take(), format)?;
+    let mut values = tree::read(&mut cursor, grid.buffers.take(), format, cap)?;
     let mut warnings = warnings(&grid, &others);
     if grid.metadata.text("sign").is_some_and(|sign| sign.starts_with("positive inside")) {
         values.turn();

@@ -3,7 +3,8 @@
 use glam::IVec3;
 
 use super::super::error::{GridReadError, GridReadProblem};
-use super::super::{BLOCK_VOXELS, Block, SparseValues, Tile};
+use super::super::numbers::Cap;
+use super::super::{BLOCK_VOXELS, Block, BlockValues, SparseValues, Tile};
 use super::cursor::{Cursor, Mask};
 use super::values::Format;
 use super::{SIDES, in_block, place};
@@ -16,6 +17,7 @@ pub(super) fn read(
     cursor: &mut Cursor<'_>,
     buffers: Option<Cursor<'_>>,
     mut format: Format,
+    cap: Cap,
 ) -> Result<SparseValues, GridReadError> {
     let count = cursor.u32("the number of buffers")?;
     if count != 1 {
@@ -23,8 +25,9 @@ pub(super) fn read(
     }
     format.background = format.number(cursor, "the background")?;
     finite(format.background, IVec3::ZERO, cursor)?;
-    let mut tree = Tree { format, leaves: Vec::new(), tiles: Vec::new() };
+    let mut tree = Tree { format, cap, leaves: Vec::new(), tiles: Vec::new() };
     tree.root(cursor)?;
+    tree.check_room(cursor)?;
     let mut cursor = buffers.unwrap_or_else(|| cursor.clone());
     let blocks = tree.leaves.iter().map(|&corner| tree.format.leaf(corner, &mut cursor)).collect::<Result<_, _>>()?;
     let mut values = SparseValues { blocks, tiles: tree.tiles, background: format.background, shift: IVec3::ZERO };
@@ -34,12 +37,21 @@ pub(super) fn read(
 
 struct Tree {
     format: Format,
+    cap: Cap,
     /// The corners of the leaves, in their order.
     leaves: Vec<IVec3>,
     tiles: Vec<Tile>,
 }
 
 impl Tree {
+    /// Refuses more leaves and tiles than there may be.
+    fn check_room(&self, cursor: &Cursor<'_>) -> Result<(), GridReadError> {
+        // A block, its values, and what keeping them apart costs.
+        const LEAF: usize = size_of::<Block>() + size_of::<BlockValues>() + 48;
+        let room = self.leaves.len().saturating_mul(LEAF).saturating_add(self.tiles.len() * size_of::<Tile>());
+        self.cap.check(room, 0).map_err(|problem| problem.at_byte(cursor.at()))
+    }
+
     fn root(&mut self, cursor: &mut Cursor<'_>) -> Result<(), GridReadError> {
         const WHAT: &str = "the root of the tree";
         let (tiles, children) = (cursor.u32(WHAT)?, cursor.u32(WHAT)?);
@@ -75,6 +87,7 @@ impl Tree {
             let corner = corner + place(n, side, child);
             if level == 0 {
                 self.node(corner, 1, cursor)?;
+                self.check_room(cursor)?;
             } else {
                 cursor.take(BLOCK_VOXELS / 8, "the mask of a block")?;
                 self.leaves.push(corner);

@@ -107,5 +107,5 @@ impl Format {
 }
 
 fn unzip(data: &[u8], size: usize) -> Result<Vec<u8>, GridReadProblem> {
-    numbers::unpack(ZlibDecoder::new(data), size, data.len())
+    numbers::unpack(ZlibDecoder::new(data), size)
 }

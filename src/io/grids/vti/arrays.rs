@@ -5,7 +5,7 @@ use base64::engine::general_purpose::STANDARD;
 use flate2::read::ZlibDecoder;
 
 use super::super::error::{GridReadError, GridReadProblem, shown};
-use super::super::numbers::{self, Kind};
+use super::super::numbers::{self, Cap, Kind};
 use super::xml::{Appended, Array, Attributes};
 
 /// How the whole file stores its numbers.
@@ -16,12 +16,12 @@ pub(super) struct Storage {
     /// Bytes of the counts before the numbers: 4 or 8.
     word: usize,
     zlib: bool,
-    /// Bytes of the whole file.
-    length: usize,
+    /// What the whole file may take.
+    cap: Cap,
 }
 
 impl Storage {
-    pub(super) fn new(file: &Attributes, length: usize) -> Result<Self, GridReadError> {
+    pub(super) fn new(file: &Attributes, cap: Cap) -> Result<Self, GridReadError> {
         let wrong = |expected: &str, found: &str| {
             Err(GridReadProblem::syntax(expected, shown(found.as_bytes())).at_byte(file.byte))
         };
@@ -44,7 +44,7 @@ impl Storage {
                 return Err(GridReadProblem::Unsupported(text).at_byte(file.byte));
             }
         };
-        Ok(Self { big, word, zlib, length })
+        Ok(Self { big, word, zlib, cap })
     }
 
     /// The `count` numbers of `array`.
@@ -63,7 +63,10 @@ impl Storage {
         let kind = name.and_then(kind).ok_or_else(|| wrong("a type of numbers, such as Float32,", name))?;
         let format = array.attributes.get("format");
         let (data, base64, byte) = match format {
-            Some("ascii") | None => return numbers::from_text(array.text, count).map_err(|e| e.at_byte(place)),
+            Some("ascii") | None => {
+                let values = self.cap.check_values(count, 0).and_then(|()| numbers::from_text(array.text, count));
+                return values.map_err(|e| e.at_byte(place));
+            }
             Some("binary") => (array.text.trim_ascii(), true, place),
             Some("appended") => {
                 let appended = appended.ok_or_else(|| wrong("the element AppendedData", None))?;
@@ -71,34 +74,35 @@ impl Storage {
                 let start = offset.and_then(|offset| offset.trim().parse().ok());
                 let start: usize = start.ok_or_else(|| wrong("an offset into the appended numbers", offset))?;
                 let data = appended.data.get(start..).unwrap_or_default();
-                (data, appended.base64, appended.byte.saturating_add(start).min(self.length))
+                (data, appended.base64, appended.byte.saturating_add(start).min(self.cap.length))
             }
             Some(_) => return Err(wrong("ascii, binary or appended as format", format)),
         };
         let size = count.checked_mul(kind.width()).ok_or_else(|| wrong("fewer numbers", None))?;
         let source = Source { data, base64 };
-        let bytes = if self.zlib { self.unzip(source, size) } else { self.plain(source, size) };
+        let bytes = if self.zlib { self.unzip(source, size, count) } else { self.plain(source, size, count) };
         Ok(kind.decode(&bytes.map_err(|e| e.at_byte(byte))?, self.big))
     }
 
     /// The length in bytes, then the bytes.
-    fn plain(&self, source: Source<'_>, size: usize) -> Result<Vec<u8>, GridReadProblem> {
+    fn plain(&self, source: Source<'_>, size: usize, count: usize) -> Result<Vec<u8>, GridReadProblem> {
         let whole = size.checked_add(self.word);
         let whole = whole.ok_or_else(|| GridReadProblem::truncated(format!("{size} bytes"), "there are fewer"))?;
         self.check_size(self.count(&source.take(0, self.word)?, 0), size)?;
+        self.cap.check_values(count, size)?;
         let mut bytes = source.take(0, whole)?;
         bytes.drain(..self.word);
         Ok(bytes)
     }
 
     /// The number of blocks, the size of a whole one and of the last, the packed size of each, and then the blocks.
-    fn unzip(&self, source: Source<'_>, size: usize) -> Result<Vec<u8>, GridReadProblem> {
+    fn unzip(&self, source: Source<'_>, size: usize, count: usize) -> Result<Vec<u8>, GridReadProblem> {
         let start = source.take(0, 3 * self.word)?;
         let [blocks, whole, last] = [0, 1, 2].map(|n| self.count(&start, n));
         let partial = u64::from(last > 0);
         let total = blocks.checked_sub(partial).and_then(|n| n.checked_mul(whole)).and_then(|n| n.checked_add(last));
         self.check_size(total.unwrap_or(u64::MAX), size)?;
-        numbers::check_unpacked(size, self.length)?;
+        self.cap.check_values(count, size)?;
         let sizes = usize::try_from(blocks).ok().and_then(|blocks| blocks.checked_add(3)?.checked_mul(self.word));
         let many = || GridReadProblem::truncated(format!("{blocks} packed blocks"), "there are fewer");
         let header = source.take(0, sizes.ok_or_else(many)?)?;
@@ -110,7 +114,7 @@ impl Storage {
         for n in 3..header.len() / self.word {
             let end = at + self.count(&header, n) as usize;
             let wanted = left.min(whole as usize);
-            bytes.extend(numbers::unpack(ZlibDecoder::new(&packed[at..end]), wanted, self.length)?);
+            bytes.extend(numbers::unpack(ZlibDecoder::new(&packed[at..end]), wanted)?);
             (at, left) = (end, left - wanted);
         }
         match left {

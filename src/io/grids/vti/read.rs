@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::super::error::{GridReadError, GridReadProblem, shown};
-use super::super::numbers::count;
+use super::super::numbers::{Cap, count};
 use super::super::{GridFile, GridFormat, GridValues, all_finite, one_spacing, spacing_of_axes};
 use super::arrays::Storage;
 use super::xml::{Array, Document, Section, parse};
@@ -17,7 +17,7 @@ struct Frame {
     points: [usize; 3],
 }
 
-pub(in crate::io::grids) fn read(bytes: &[u8]) -> Result<GridFile, GridReadError> {
+pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, GridReadError> {
     let document = parse(bytes)?;
     let mut frame = frame(&document)?;
     let array = chosen(&document)?;
@@ -30,7 +30,7 @@ pub(in crate::io::grids) fn read(bytes: &[u8]) -> Result<GridFile, GridReadError
     let dims = frame.points;
     let many =
         || GridReadProblem::truncated(format!("{dims:?} numbers"), "there are fewer").at_byte(array.attributes.byte);
-    let storage = Storage::new(&document.file, bytes.len())?;
+    let storage = Storage::new(&document.file, cap)?;
     let mut values = storage.numbers(array, count(dims).ok_or_else(many)?, document.appended)?;
     all_finite(&values, dims)?;
     if remark(&document, "sign").is_some_and(|sign| sign.starts_with("positive inside")) {
