@@ -13,6 +13,7 @@
 
 mod crease;
 mod cut;
+mod deviation;
 mod facets;
 mod fitting;
 mod keep;
@@ -23,6 +24,7 @@ mod sharpen;
 mod simplify;
 mod snap;
 mod surface;
+mod zone;
 
 pub use facets::{Facets, Side, Sides, Wanted};
 pub use surface::{NOT_KEPT, Surface};

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::facets::Facets;
 use super::surface::{Surface, agreement, shape};
@@ -80,9 +80,22 @@ pub(super) fn meeting(mesh: &TriMesh, h: f64, changed: &[u32], progress: &Progre
         }
     };
     let near: Vec<u32> = (0..mesh.triangles.len() as u32).into_par_iter().filter(|&t| is_near(t as usize)).collect();
-    let part = TriMesh {
-        positions: mesh.positions.clone(),
-        triangles: near.iter().map(|&t| mesh.triangles[t as usize]).collect(),
-    };
+    let part = part(&mesh.positions, near.iter().map(|&t| mesh.triangles[t as usize]));
     Ok(intersecting_triangles(&part, progress)?.into_iter().map(|t| near[t as usize]).collect())
+}
+
+/// Some triangles over `positions` as a mesh of their own, in the same order.
+pub(super) fn part(positions: &[DVec3], triangles: impl Iterator<Item = [u32; 3]>) -> TriMesh {
+    let mut part = TriMesh::default();
+    let mut number: FxHashMap<u32, u32> = FxHashMap::default();
+    for t in triangles {
+        let corners = t.map(|v| {
+            *number.entry(v).or_insert_with(|| {
+                part.positions.push(positions[v as usize]);
+                part.positions.len() as u32 - 1
+            })
+        });
+        part.triangles.push(corners);
+    }
+    part
 }
