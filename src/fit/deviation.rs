@@ -2,7 +2,8 @@
 //!
 //! Both the triangles around a vertex and those in their place after it has gone into a neighbour have the same border. Seen
 //! along their mean normal they cover the same area, and the distance between them changes linearly where no edge passes: it is
-//! largest at the vertex that goes, or where an edge of before and one of after cross.
+//! largest at the vertex that goes, or where an edge of before and one of after cross. What a triangle stands for is what those
+//! before that it lies over stood for, so distances add up along what became of each place, and not along what is beside it.
 
 use glam::{DVec2, DVec3};
 
@@ -18,6 +19,7 @@ pub(super) const MOST_EDGES: usize = 128;
 /// The triangles around a vertex of at most N edges, before and after.
 struct Star<const N: usize> {
     count: usize,
+    vertex: DVec3,
     /// The neighbours, counter-clockwise, the one that the vertex goes into first.
     ring: [DVec3; N],
     /// The same seen along the mean normal, from the vertex.
@@ -29,39 +31,25 @@ struct Star<const N: usize> {
     normal: DVec3,
 }
 
-/// The largest distance between the triangles around the origin of `half_edge` and those that are there when it has gone into
-/// the target, both ways; `None` when it is more than `most`. In the units of `at`.
-pub(super) fn deviation(edges: &HalfEdges, at: &[DVec3], half_edge: u32, most: f64) -> Option<f64> {
+/// A triangle that an edge only just passes over is not counted as being under it: shares from the ends of an edge.
+const BESIDE: f64 = 1e-9;
+
+/// Of the triangles that are there when the origin of `half_edge` has gone into its target, in the order of the ring, how far
+/// each is from the surface that it stands for, at most, given (`off`) how far each triangle was before. Distances of less than
+/// `nothing` from one to the other do not count. `None` when one is more than `most`. In the units of `at`.
+pub(super) fn deviation(
+    (edges, at, off): (&HalfEdges, &[DVec3], &[f32]),
+    half_edge: u32,
+    (nothing, most): (f64, f64),
+    result: impl FnMut(f64),
+) -> Option<()> {
     match edges.valence(edges.origin(half_edge)) {
-        3..=USUAL => within(&Star::<USUAL>::new(edges, at, half_edge)?, at[edges.origin(half_edge) as usize], most),
+        3..=USUAL => Star::<USUAL>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result),
         3..=MOST_EDGES => {
-            within(&Star::<MOST_EDGES>::new(edges, at, half_edge)?, at[edges.origin(half_edge) as usize], most)
+            Star::<MOST_EDGES>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result)
         }
         _ => None,
     }
-}
-
-fn within<const N: usize>(star: &Star<N>, vertex: DVec3, most: f64) -> Option<f64> {
-    let (to, count) = (star.ring[0], star.count);
-    let triangle = |k: usize| [to, star.ring[k], star.ring[k + 1]];
-    let square = |k: usize| triangle(k).nearest(vertex).0.distance_squared(vertex);
-    let mut worst = (1..count - 1).map(square).fold(f64::INFINITY, f64::min).sqrt();
-    if worst > most {
-        return None;
-    }
-    for i in 1..count {
-        let steepness = star.before[i].max(star.before[i - 1]);
-        for k in (2..count - 1).filter(|&k| k != i) {
-            let Some((s, t)) = crossing(star.flat[i], star.flat[0], star.flat[k]) else { continue };
-            let apart = vertex.lerp(star.ring[i], s) - to.lerp(star.ring[k], t);
-            let steepness = steepness.max(star.after[k]).max(star.after[k - 1]);
-            worst = worst.max(star.normal.dot(apart).abs() * steepness);
-        }
-        if worst > most {
-            return None;
-        }
-    }
-    Some(worst)
 }
 
 impl<const N: usize> Star<N> {
@@ -87,7 +75,69 @@ impl<const N: usize> Star<N> {
         let (u, v) = normal.any_orthonormal_pair();
         let flat = ring.map(|p| DVec2::new((p - vertex).dot(u), (p - vertex).dot(v)));
         let cosine = |n: DVec3| n.dot(normal).abs();
-        Some(Self { count, ring, flat, before: before.map(cosine), after: after.map(cosine), normal })
+        Some(Self { count, vertex, ring, flat, before: before.map(cosine), after: after.map(cosine), normal })
+    }
+
+    /// See [`deviation`].
+    fn offs(
+        &self,
+        (edges, off): (&HalfEdges, &[f32]),
+        half_edge: u32,
+        (nothing, most): (f64, f64),
+        mut result: impl FnMut(f64),
+    ) -> Option<()> {
+        let mut old = [0.0; N];
+        for (old, e) in old.iter_mut().zip(edges.ring(edges.origin(half_edge))) {
+            *old = f64::from(off[e as usize / 3]);
+        }
+        let first = edges.ring(edges.origin(half_edge)).position(|e| e == half_edge)?;
+        old[..self.count].rotate_left(first);
+        // Of each triangle after: how far it is from those before that are over it, and how far these were already.
+        let (mut own, mut before) = ([0.0f64; N], [0.0f64; N]);
+        before[1..self.count - 1].copy_from_slice(&old[1..self.count - 1]);
+        self.at_vertex(&old, &mut own, &mut before);
+        self.at_crossings(&old, &mut own, &mut before);
+        for k in 1..self.count - 1 {
+            let after = if own[k] > nothing { before[k] + own[k] } else { before[k] };
+            if own[k] > most || after > most {
+                return None;
+            }
+            result(after);
+        }
+        Some(())
+    }
+
+    /// The triangles after that the vertex is nearest to stand for all around it.
+    fn at_vertex(&self, old: &[f64; N], own: &mut [f64; N], before: &mut [f64; N]) {
+        let all = old[..self.count].iter().copied().fold(0.0, f64::max);
+        let triangle = |k: usize| [self.ring[0], self.ring[k], self.ring[k + 1]];
+        let mut apart = [0.0; N];
+        let mut least = f64::INFINITY;
+        for k in 1..self.count - 1 {
+            apart[k] = triangle(k).nearest(self.vertex).0.distance_squared(self.vertex);
+            least = least.min(apart[k]);
+        }
+        for k in (1..self.count - 1).filter(|&k| apart[k] <= least) {
+            own[k] = own[k].max(least.sqrt());
+            before[k] = all;
+        }
+    }
+
+    /// Where an edge of before and one of after cross, the triangles on both sides of them lie over one another.
+    fn at_crossings(&self, old: &[f64; N], own: &mut [f64; N], before: &mut [f64; N]) {
+        for i in 1..self.count {
+            let over = old[i].max(old[i - 1]);
+            let steep = self.before[i].max(self.before[i - 1]);
+            for k in (2..self.count - 1).filter(|&k| k != i) {
+                let Some((s, t)) = crossing(self.flat[i], self.flat[0], self.flat[k]) else { continue };
+                let apart = self.vertex.lerp(self.ring[i], s) - self.ring[0].lerp(self.ring[k], t);
+                let gap = self.normal.dot(apart).abs() * steep.max(self.after[k]).max(self.after[k - 1]);
+                for k in [k - 1, k] {
+                    own[k] = own[k].max(gap);
+                    before[k] = before[k].max(over);
+                }
+            }
+        }
     }
 }
 
@@ -96,5 +146,6 @@ fn crossing(to: DVec2, a: DVec2, b: DVec2) -> Option<(f64, f64)> {
     let way = b - a;
     let turn = to.perp_dot(way);
     let (s, t) = (a.perp_dot(way) / turn, a.perp_dot(to) / turn);
-    (s > 0.0 && s < 1.0 && t > 0.0 && t < 1.0).then_some((s, t))
+    let within = |share: f64| share > BESIDE && share < 1.0 - BESIDE;
+    (within(s) && within(t)).then_some((s, t))
 }

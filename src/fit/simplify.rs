@@ -65,7 +65,7 @@ struct Work<'a> {
     /// Lattice units.
     at: Vec<DVec3>,
     /// How far each triangle is from the surface that it stands for, at most, h.
-    off: Vec<f64>,
+    off: Vec<f32>,
     /// The tolerance, h.
     most: f64,
     /// The same for vertices of the source.
@@ -80,8 +80,6 @@ struct Wish {
     cost: f64,
     vertex: u32,
     half_edge: u32,
-    /// How far the triangles will then be from the surface that they stand for, at most, h.
-    off: f64,
 }
 
 /// A collapse that was done where triangles may meet.
@@ -90,39 +88,60 @@ struct Done {
     to: u32,
     record: CollapseRecord,
     /// What the triangles around the vertex stood for before: those that stay, then the two that vanish.
-    off: Vec<(u32, f64)>,
+    off: Vec<(u32, f32)>,
 }
 
-/// [`collapsed`] within the tolerance (0 for not at all), so that no triangles meet. `None` when the surface as given is
-/// no valid solid.
+/// A simplified surface.
+pub(super) struct Simple {
+    pub surface: Surface,
+    /// How far each triangle is from the surface that it stands for, at most, h.
+    pub off: Vec<f32>,
+}
+
+/// What is to be simplified, and how.
+struct Task<'a> {
+    surface: &'a Surface,
+    /// How far each triangle is already from the surface that it stands for, h.
+    off: &'a [f32],
+    facets: &'a Facets<'a>,
+    h: f64,
+    options: &'a FitOptions,
+}
+
+/// [`collapsed`] within the tolerance (0 for not at all), so that no triangles meet; `off` is how far each triangle is already from
+/// the surface that it stands for, h. `None` when the surface as given is no valid solid.
 pub(super) fn simplified(
-    surface: &Surface,
+    (surface, off): (&Surface, &[f32]),
     facets: &Facets<'_>,
     h: f64,
     options: &FitOptions,
     progress: &Progress,
-) -> Result<Option<Surface>, Stopped> {
-    let was_solid = || is_solid(&surface.mesh, true, progress);
+) -> Result<Option<Simple>, Stopped> {
+    let as_it_is = || {
+        let solid = is_solid(&surface.mesh, true, progress)?;
+        Ok(solid.then(|| Simple { surface: surface.clone(), off: off.to_vec() }))
+    };
     if options.tolerance <= 0.0 {
-        return Ok(was_solid()?.then(|| surface.clone()));
+        return as_it_is();
     }
+    let task = Task { surface, off, facets, h, options };
     let frozen = class_borders(surface, facets);
     let mut zone = Zone::nothing(h);
     for round in 0..=MOST_ROUNDS {
-        let simple = collapsed(surface, facets, h, options, (&frozen, &zone), progress)?;
-        let bad = intersecting_triangles(&simple.mesh, progress)?;
-        if bad.is_empty() && is_solid(&simple.mesh, false, progress)? {
-            return Ok(Some(simple));
+        let simple = collapsed(&task, (&frozen, &zone), progress)?;
+        let bad = intersecting_triangles(&simple.surface.mesh, progress)?;
+        if bad.is_empty() {
+            match is_solid(&simple.surface.mesh, false, progress)? {
+                true => return Ok(Some(simple)),
+                false => break,
+            }
         }
-        if bad.is_empty() || (round == 0 && !was_solid()?) {
-            break;
-        }
-        zone.add(&meeting_places(&simple.mesh, &bad, h, progress)?, h);
+        zone.add(&meeting_places(&simple.surface.mesh, &bad, h, progress)?, h);
         if round + 1 == MOST_ROUNDS {
             zone = Zone::Everything;
         }
     }
-    Ok(was_solid()?.then(|| surface.clone()))
+    as_it_is()
 }
 
 /// Whether the mesh is valid, also in a format that merges equal positions; without looking for
@@ -150,15 +169,11 @@ fn class_borders(surface: &Surface, facets: &Facets<'_>) -> Vec<bool> {
 
 /// Collapses edges as long as the surface stays within the tolerance of where it was. Vertices in `frozen` stay, and within the
 /// zone no triangles meet afterwards.
-fn collapsed(
-    surface: &Surface,
-    facets: &Facets<'_>,
-    h: f64,
-    options: &FitOptions,
-    (frozen, zone): (&[bool], &Zone),
-    progress: &Progress,
-) -> Result<Surface, Stopped> {
-    let Some(mut work) = Work::new(surface, facets, h, options) else { return Ok(surface.clone()) };
+fn collapsed(task: &Task<'_>, (frozen, zone): (&[bool], &Zone), progress: &Progress) -> Result<Simple, Stopped> {
+    let &Task { surface, off, .. } = task;
+    let Some(mut work) = Work::new(task) else {
+        return Ok(Simple { surface: surface.clone(), off: off.to_vec() });
+    };
     let mut frozen = frozen.to_vec();
     let mut active: Vec<u32> = (0..work.at.len() as u32).filter(|&v| !frozen[v as usize]).collect();
     let mut locked = vec![0u32; work.at.len()];
@@ -242,33 +257,38 @@ fn plane(surface: &Surface, facets: &Facets<'_>, h: f64, t: usize) -> Option<(DV
 
 impl<'a> Work<'a> {
     /// `None` when the surface is no closed manifold.
-    fn new(surface: &'a Surface, facets: &'a Facets<'a>, h: f64, options: &FitOptions) -> Option<Self> {
+    fn new(task: &Task<'a>) -> Option<Self> {
+        let &Task { surface, off, facets, h, options } = task;
         let edges = HalfEdges::new(&surface.mesh.triangles, surface.mesh.positions.len()).ok()?;
         let at: Vec<DVec3> = surface.mesh.positions.par_iter().map(|p| *p / h).collect();
         let quadrics = quadrics(surface, facets, h, &edges);
         let largest = at.par_iter().map(|p| p.abs().max_element()).reduce(|| 0.0, f64::max);
+        let nothing = (NOTHING * options.tolerance).max(STEPS * f64::from(f32::EPSILON) * largest);
         Some(Self {
             surface,
             facets,
             edges,
             quadrics,
+            off: off.to_vec(),
             at,
-            off: vec![0.0; surface.mesh.triangles.len()],
             most: options.tolerance,
             most_kept: options.kept_tolerance,
-            nothing: (NOTHING * options.tolerance).max(STEPS * f64::from(f32::EPSILON) * largest),
+            nothing,
         })
     }
 
-    fn finish(self) -> Surface {
+    fn finish(self) -> Simple {
         let Self { surface, edges, .. } = self;
         let compacted = edges.compacted();
         let positions = compacted.vertices.iter().map(|&v| surface.at(v)).collect();
         let sides = compacted.vertices.iter().map(|&v| surface.sides[v as usize]).collect();
         let kept = compacted.vertices.iter().map(|&v| surface.kept[v as usize]).collect();
         let live = (0..edges.triangle_ids()).filter(|&t| edges.is_live_triangle(t as u32));
-        let facets = live.map(|t| surface.facets[t]).collect();
-        Surface { mesh: TriMesh { positions, triangles: compacted.triangles }, sides, kept, facets }
+        let (facets, off) = live.map(|t| (surface.facets[t], self.off[t])).unzip();
+        Simple {
+            surface: Surface { mesh: TriMesh { positions, triangles: compacted.triangles }, sides, kept, facets },
+            off,
+        }
     }
 
     /// What is needed to take a collapse back that is about to be done.
@@ -325,17 +345,15 @@ impl<'a> Work<'a> {
             }
         }
         let worst = self.worst(vertex);
-        best.iter().take_while(|b| b.0.is_finite()).filter(|b| self.allowed(vertex, b.2, worst)).find_map(|b| {
-            let off = self.off_after(vertex, b.2)?;
-            Some(Wish { cost: b.0, vertex, half_edge: b.2, off })
-        })
+        let fits = |b: &&(f64, f64, u32)| self.allowed(vertex, b.2, worst) && self.after(b.2, |_| ()).is_some();
+        best.iter().take_while(|b| b.0.is_finite()).find(fits).map(|b| Wish { cost: b.0, vertex, half_edge: b.2 })
     }
 
-    /// How far the triangles around a vertex would be from the surface that they stand for; `None` for farther than the tolerance.
-    fn off_after(&self, vertex: u32, half_edge: u32) -> Option<f64> {
-        let before = self.edges.ring(vertex).map(|e| self.off[e as usize / 3]).fold(0.0, f64::max);
-        let own = deviation(&self.edges, &self.at, half_edge, (self.most - before).max(self.nothing))?;
-        Some(if own > self.nothing { before + own } else { before })
+    /// How far the triangles around the origin of a half-edge would be from the surface that they stand for when it has gone; `None`
+    /// for too far.
+    fn after(&self, half_edge: u32, result: impl FnMut(f64)) -> Option<()> {
+        let most = self.most.max(self.nothing);
+        deviation((&self.edges, &self.at, &self.off), half_edge, (self.nothing, most), result)
     }
 
     /// What it costs to move `vertex` into `to`. Coarse, so that on flat parts the shortest edges go first.
@@ -404,14 +422,20 @@ impl<'a> Work<'a> {
     }
 
     fn collapse(&mut self, wish: &Wish) -> bool {
-        let &Wish { vertex, half_edge, off, .. } = wish;
+        let &Wish { vertex, half_edge, .. } = wish;
         let to = self.edges.target(half_edge);
         if !self.edges.can_collapse(half_edge) || self.cost(vertex, to) > self.most * self.most {
             return false;
         }
+        let mut after = Vec::with_capacity(self.edges.valence(vertex));
+        if self.after(half_edge, |off| after.push(off as f32)).is_none() {
+            return false;
+        }
         let quadric = self.quadrics[vertex as usize];
         self.quadrics[to as usize] += quadric;
-        for e in self.edges.ring(vertex) {
+        let mut e = half_edge;
+        for off in after {
+            e = self.edges.twin(self.edges.prev(e));
             self.off[e as usize / 3] = off;
         }
         self.edges.collapse_unchecked(half_edge);
