@@ -4,7 +4,7 @@
 //! collapse all such edges is to merge the vertices of each inside voxel. Instead of one collapse
 //! after the other, all voxels are merged at once and the ones that did harm are split again, until
 //! nothing is wrong: a vertex whose triangles are not one fan, a triangle that turned over, a fold,
-//! an intersection, a small body turned inside out. Each step looks at all vertices in parallel and depends on no order; it ends
+//! an intersection, two vertices in one place, a small body turned inside out. Each step looks at all vertices in parallel and depends on no order; it ends
 //! because the mesh without any merging is sound.
 
 use glam::{DVec3, IVec3};
@@ -85,6 +85,7 @@ pub fn collapse_same_voxel(
             rayon::join(|| intersecting_triangles(&part.mesh, progress), || merging.overturned(&shells, &volumes));
         let mut harmful = merging.groups_of(intersecting?.iter().map(|&t| part.origin[t as usize]));
         harmful.extend(overturned);
+        harmful.extend(merging.coincident());
         harmful.sort_unstable();
         harmful.dedup();
         if harmful.is_empty() {
@@ -327,6 +328,19 @@ impl<'a> Merging<'a> {
         }
         let over = |v: usize| before[shells[v] as usize] * after[shells[v] as usize] <= 0.0;
         (0..shells.len()).filter(|&v| over(v)).filter_map(|v| self.merged_group(v as u32)).collect()
+    }
+
+    /// The merged groups whose vertex is exactly where another one is: in formats without indices the two would be one, and the
+    /// search for intersections takes them for one.
+    fn coincident(&self) -> Vec<u32> {
+        let mut places: Vec<([u64; 3], u32)> = (0..self.stands.len() as u32)
+            .into_par_iter()
+            .filter(|&v| self.stands[v as usize] == v)
+            .map(|v| ((self.at[v as usize] + 0.0).to_array().map(f64::to_bits), v))
+            .collect();
+        places.par_sort_unstable();
+        let shared = places.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1).flatten();
+        shared.filter_map(|&(_, v)| self.merged_group(v)).collect()
     }
 
     /// The merged groups that the corners of raw triangles belong to.

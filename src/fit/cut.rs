@@ -11,7 +11,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::crease::{Crease, FLAT, Place, crease, nearest};
 use super::facets::{Facets, Sides};
-use super::surface::{NOT_KEPT, Surface, rounded, shape};
+use super::surface::{NOT_KEPT, Surface, faces_out, rounded, shape};
 
 /// A corner nearer to a point of a crease than this, h, is that point.
 const SAME: f64 = 0.02;
@@ -40,6 +40,20 @@ pub(super) struct Spared {
     pub edges: FxHashSet<[u32; 2]>,
     /// Triangles of the first surface in which nothing but their own edges is cut.
     pub triangles: FxHashSet<u32>,
+    /// Triangles of the first surface beside another sheet, whose creases stay a little within the solid, and the edges that are
+    /// cut there.
+    pub inset: FxHashSet<u32>,
+    /// See `inset`.
+    pub inset_edges: FxHashSet<[u32; 2]>,
+}
+
+/// How far within the solid a crease stays where another sheet has its crease in the same place, h.
+const INSET: f64 = 0.02;
+
+/// A place on a crease, moved a little into the solid.
+pub(super) fn inset(place: Place, facets: &Facets<'_>, h: f64) -> Place {
+    let outward: DVec3 = place.sides.iter().map(|s| facets.plane(s).normal).sum();
+    Place { at: place.at - outward.normalize_or_zero() * (INSET * h), ..place }
 }
 
 /// Cuts `surface` at the points given for some of its edges (smaller vertex first), then the edges that this
@@ -54,7 +68,14 @@ pub(super) fn cut(
 ) -> Cut {
     let first = surface.mesh.positions.len() as u32;
     let mut cut = Cut::of(surface);
-    subdivide(&mut cut, points);
+    let within = |&(edge, crease): &([u32; 2], Crease)| match spared.inset_edges.contains(&edge) {
+        true => (edge, Crease { place: inset(crease.place, facets, h), ..crease }),
+        false => (edge, crease),
+    };
+    match spared.inset.is_empty() {
+        true => subdivide(&mut cut, points),
+        false => subdivide(&mut cut, &points.iter().map(within).collect::<Vec<_>>()),
+    }
     let again: Vec<([u32; 2], Crease)> = second_points(&cut, facets, h, first, spared, wanted);
     let edges: FxHashSet<[u32; 2]> = again.iter().map(|p| p.0).collect();
     let has_cut = |t: &[u32; 3]| edges_of(t).iter().any(|e| edges.contains(e));
@@ -80,17 +101,27 @@ fn second_points(
     wanted: impl Fn(&Crease) -> bool + Sync,
 ) -> Vec<([u32; 2], Crease)> {
     let triangles = cut.surface.mesh.triangles.par_iter().zip(&cut.origin);
-    let mut edges: Vec<([u32; 2], bool)> = triangles
+    let mut edges: Vec<([u32; 2], bool, bool)> = triangles
         .filter(|(t, _)| t.iter().any(|&v| v >= first))
-        .flat_map_iter(|(t, origin)| edges_of(t).map(|edge| (edge, spared.triangles.contains(origin))))
-        .filter(|(edge, _)| edge[1] >= first)
+        .flat_map_iter(|(t, origin)| {
+            let (spared, inset) = (spared.triangles.contains(origin), spared.inset.contains(origin));
+            edges_of(t).map(|edge| (edge, spared, inset))
+        })
+        .filter(|(edge, ..)| edge[1] >= first)
         .collect();
     edges.par_sort_unstable();
     // An edge is there once for each of its triangles.
-    let pairs: Vec<&[([u32; 2], bool)]> = edges.chunk_by(|a, b| a.0 == b.0).collect();
-    let free = pairs.into_par_iter().filter(|pair| pair.iter().all(|(_, spared)| !spared)).map(|pair| pair[0].0);
+    let pairs: Vec<&[([u32; 2], bool, bool)]> = edges.chunk_by(|a, b| a.0 == b.0).collect();
+    let free = pairs.into_par_iter().filter(|pair| pair.iter().all(|(_, spared, _)| !spared));
     let place = |v: u32| cut.surface.place(v);
-    free.filter_map(|edge| Some((edge, crease(facets, h, &place(edge[0]), &place(edge[1])).filter(&wanted)?))).collect()
+    let found = free.filter_map(|pair| {
+        let edge = pair[0].0;
+        let found = crease(facets, h, &place(edge[0]), &place(edge[1])).filter(&wanted)?;
+        let within = pair.iter().any(|(.., inset)| *inset);
+        let place = if within { inset(found.place, facets, h) } else { found.place };
+        Some((edge, Crease { place, ..found }))
+    });
+    found.collect()
 }
 
 /// Cuts triangles at points on their edges.
@@ -131,23 +162,66 @@ fn raise_corners(cut: &mut Cut, facets: &Facets<'_>, h: f64, first: u32, spared:
         .filter(|&t| !surface.is_smooth(facets, t) && !spared.triangles.contains(&cut.origin[t as usize]))
         .filter_map(|t| Some((t, corner(facets, h, surface.places(t))?)))
         .collect();
-    for (t, place) in found {
-        let corners = cut.surface.mesh.triangles[t as usize];
+    let mut waiting: FxHashMap<u32, Place> = found.iter().copied().collect();
+    let halves = found.iter().flat_map(|&(t, _)| halves(surface.mesh.triangles[t as usize]).map(|half| (half, t)));
+    let with_half: FxHashMap<[u32; 2], u32> = halves.collect();
+    for (t, _) in found {
+        let Some(place) = waiting.remove(&t) else { continue };
+        let within = spared.inset.contains(&cut.origin[t as usize]);
+        let place = if within { inset(place, facets, h) } else { place };
         let place = Place { at: rounded(place.at), ..place };
+        let corners = cut.surface.mesh.triangles[t as usize];
         match corners.into_iter().find(|&v| cut.surface.at(v).distance(place.at) < SAME * h) {
             // A point inserted that close is meant to be the corner.
             Some(v) if v >= first => cut.surface.put(v, place),
             Some(_) => continue,
             None => {
                 let ([a, b, c], z) = (corners, cut.surface.mesh.positions.len() as u32);
+                let next = cut.surface.mesh.triangles.len() as u32;
                 cut.surface.add(place, NOT_KEPT);
                 cut.surface.mesh.triangles[t as usize] = [a, b, z];
                 cut.surface.mesh.triangles.extend([[b, c, z], [c, a, z]]);
                 cut.origin.extend([cut.origin[t as usize]; 2]);
                 cut.surface.facets.extend([cut.surface.facets[t as usize]; 2]);
+                reach_out(cut, facets, h, vec![t, next, next + 1], (&mut waiting, &with_half));
             }
         }
         cut.centred.push(cut.origin[t as usize]);
+    }
+}
+
+/// The sides of a triangle in the direction in which they run.
+fn halves([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
+/// Where a triangle beside those around a new corner wants the same corner, the edge between them is turned, so that it gets
+/// that one. `rim` are the triangles around the corner, which is the last vertex of each.
+fn reach_out(
+    cut: &mut Cut,
+    facets: &Facets<'_>,
+    h: f64,
+    mut rim: Vec<u32>,
+    (waiting, with_half): (&mut FxHashMap<u32, Place>, &FxHashMap<[u32; 2], u32>),
+) {
+    let mut around: Vec<u32> = rim.iter().map(|&n| cut.surface.mesh.triangles[n as usize][0]).collect();
+    while let Some(n) = rim.pop() {
+        let [x, y, z] = cut.surface.mesh.triangles[n as usize];
+        let Some(&t) = with_half.get(&[y, x]) else { continue };
+        let same = |place: &Place| place.at.distance(cut.surface.at(z)) < SAME * h;
+        if !waiting.get(&t).is_some_and(same) {
+            continue;
+        }
+        let Some(&w) = cut.surface.mesh.triangles[t as usize].iter().find(|v| ![x, y].contains(v)) else { continue };
+        let both = [[w, y, z], [x, w, z]];
+        if !around.contains(&w) && both.iter().all(|t| faces_out(facets, &t.map(|v| cut.surface.place(v)))) {
+            waiting.remove(&t);
+            around.push(w);
+            cut.surface.mesh.triangles[t as usize] = both[0];
+            cut.surface.mesh.triangles[n as usize] = both[1];
+            cut.centred.push(cut.origin[t as usize]);
+            rim.extend([t, n]);
+        }
     }
 }
 

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::crease::{Crease, FLAT, SMOOTH, crease};
-use super::cut::{Spared, edges_of};
+use super::crease::{Crease, FLAT, Place, SMOOTH, crease};
+use super::cut::{Spared, edges_of, inset};
 use super::facets::Facets;
 use super::snap::snap;
 use super::surface::{NOT_KEPT, Surface, rounded};
@@ -43,6 +43,8 @@ pub(super) struct Fitting<'a> {
     /// Triangles of the home surface that are other than when they were last judged; `None` for all that
     /// differ from home.
     dirty: Option<FxHashSet<u32>>,
+    /// Moved vertices that have been put a little within the solid.
+    drawn_back: FxHashSet<u32>,
     /// How often a triangle was bad with nothing left to take back.
     times_bad: FxHashMap<u32, u32>,
     snapped: usize,
@@ -72,6 +74,7 @@ impl<'a> Fitting<'a> {
             points,
             spared: Spared { triangles: kept_triangles(home), ..Spared::default() },
             dirty: None,
+            drawn_back: FxHashSet::default(),
             times_bad: FxHashMap::default(),
             snapped: snapped.len(),
             given_up: 0,
@@ -99,14 +102,19 @@ impl<'a> Fitting<'a> {
     }
 
     /// Takes back, step by step, what was done at the home triangles `bad`: first vertices
-    /// inside, then cuts, then moves, then all of this around them.
-    pub(super) fn undo(&mut self, bad: &[u32], centred: &[u32], at_once: bool) {
+    /// inside, then cuts, then moves, then all of this around them. For those that are `touching` another sheet the first step
+    /// is to stay a little within the solid.
+    pub(super) fn undo(&mut self, bad: &[u32], touching: &[u32], centred: &[u32], at_once: bool) {
         let is_centred: FxHashSet<u32> = centred.iter().copied().collect();
         let is_cut: FxHashSet<[u32; 2]> = self.points.iter().map(|p| p.0).collect();
         let mut dirty: FxHashSet<u32> = bad.iter().copied().collect();
         let mut back: FxHashSet<u32> = FxHashSet::default();
         for &t in bad {
             let ids = self.home.mesh.triangles[t as usize];
+            if !at_once && touching.binary_search(&t).is_ok() && self.spared.inset.insert(t) {
+                dirty.extend(self.draw_back(ids));
+                continue;
+            }
             self.given_up += 1;
             if is_centred.contains(&t) && self.spared.triangles.insert(t) && !at_once {
                 continue;
@@ -156,6 +164,26 @@ impl<'a> Fitting<'a> {
         // What is cut in a triangle also depends on the triangles beside it.
         let corners = dirty.iter().flat_map(|&t| self.home.mesh.triangles[t as usize]);
         self.dirty = Some(corners.flat_map(|v| self.around.of(v)).copied().collect());
+    }
+
+    /// Lets what was moved and will be cut at a home triangle stay a little within the solid; returns the triangles around.
+    fn draw_back(&mut self, ids: [u32; 3]) -> Vec<u32> {
+        self.spared.inset_edges.extend(edges_of(&ids));
+        for v in ids {
+            if self.moved[v as usize] && self.drawn_back.insert(v) {
+                let place = inset(self.surface.place(v), self.facets, self.h);
+                self.surface.put(v, Place { at: rounded(place.at), ..place });
+            }
+        }
+        ids.iter().flat_map(|&v| self.around.of(v)).copied().collect()
+    }
+
+    /// Whether no vertex of one home triangle is a neighbour of one of the other's.
+    pub(super) fn are_apart(&self, a: u32, b: u32) -> bool {
+        let corners = |t: u32| self.home.mesh.triangles[t as usize];
+        let near = corners(a).into_iter().flat_map(|v| self.around.of(v)).flat_map(|&t| corners(t));
+        let other = corners(b);
+        !near.into_iter().any(|v| other.contains(&v))
     }
 
     /// What was done.

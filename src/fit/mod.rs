@@ -13,6 +13,7 @@
 
 mod crease;
 mod cut;
+mod deviation;
 mod facets;
 mod fitting;
 mod keep;
@@ -24,6 +25,7 @@ mod simplify;
 mod snap;
 mod source;
 mod surface;
+mod zone;
 
 pub use facets::{Facets, Side, Sides, Wanted};
 pub use source::simplified_source;
@@ -31,6 +33,8 @@ pub use surface::{NOT_KEPT, Surface};
 
 use crate::ldi::Evidence;
 use crate::progress::{Progress, Stopped};
+use sharpen::Sharp;
+use simplify::Simple;
 
 /// Options of [`fit`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,16 +108,20 @@ fn refined(
     options: &FitOptions,
     progress: &Progress,
 ) -> Result<Option<(Surface, FitReport)>, Stopped> {
-    let (sharp, mut report) = sharpen::sharpen(home, facets, h, options, progress)?;
-    let Some(mut surface) = simplify::simplified(&sharp, facets, h, options, progress)? else { return Ok(None) };
+    let Sharp { surface, mut report, .. } = sharpen::sharpen(home, facets, h, options, progress)?;
+    let untouched = vec![0.0; surface.mesh.triangles.len()];
+    let simple = simplify::simplified((&surface, &untouched), facets, h, options, progress)?;
+    let Some(Simple { mut surface, off, .. }) = simple else { return Ok(None) };
     if report.given_up > 0 && report.given_up * WORTH_RETRYING < report.inserted + report.moved {
         // Simplification has cleared away what was in the way.
         let again = FitOptions { sag: f64::INFINITY, ..*options };
-        let (sharper, more) = sharpen::sharpen(&surface, facets, h, &again, progress)?;
+        let sharper = sharpen::sharpen(&surface, facets, h, &again, progress)?;
+        let more = sharper.report;
+        let off: Vec<f32> = sharper.origin.iter().map(|&t| off[t as usize]).collect();
         if more.inserted + more.moved > 0
-            && let Some(simple) = simplify::simplified(&sharper, facets, h, options, progress)?
+            && let Some(simple) = simplify::simplified((&sharper.surface, &off), facets, h, options, progress)?
         {
-            surface = simple;
+            surface = simple.surface;
             report = FitReport {
                 moved: report.moved + more.moved,
                 inserted: report.inserted + more.inserted,

@@ -1,6 +1,6 @@
 //! Sums of squared distances from planes (Garland & Heckbert 1997).
 
-use std::ops::AddAssign;
+use std::ops::{AddAssign, SubAssign};
 
 use glam::{DMat3, DVec3};
 
@@ -39,5 +39,13 @@ impl AddAssign for Quadric {
         self.squares.iter_mut().zip(other.squares).for_each(|(a, b)| *a += b);
         self.linear += other.linear;
         self.constant += other.constant;
+    }
+}
+
+impl SubAssign for Quadric {
+    fn sub_assign(&mut self, other: Self) {
+        self.squares.iter_mut().zip(other.squares).for_each(|(a, b)| *a -= b);
+        self.linear -= other.linear;
+        self.constant -= other.constant;
     }
 }

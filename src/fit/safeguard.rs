@@ -2,11 +2,11 @@
 
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::facets::Facets;
 use super::surface::{Surface, agreement, shape};
-use crate::mesh::{TriMesh, intersecting_triangles};
+use crate::mesh::{TriMesh, intersecting_triangles, self_intersections};
 use crate::progress::{Progress, Stopped};
 
 /// The least height of a triangle, h: some steps of `f32` at the largest lattices.
@@ -37,11 +37,18 @@ pub(super) fn coincident(mesh: &TriMesh, changed: &[u32]) -> Vec<u32> {
     let mut used = vec![false; mesh.positions.len()];
     mesh.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
     let key = |v: u32| (mesh.positions[v as usize] + 0.0).to_array().map(f64::to_bits);
-    let mut places: Vec<([u64; 3], u32)> =
-        (0..used.len() as u32).into_par_iter().filter(|&v| used[v as usize]).map(|v| (key(v), v)).collect();
-    places.par_sort_unstable();
-    let shared: FxHashSet<u32> =
-        places.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() > 1).flatten().map(|place| place.1).collect();
+    let mut mine: Vec<u32> = changed.iter().flat_map(|&t| mesh.triangles[t as usize]).collect();
+    mine.par_sort_unstable();
+    mine.dedup();
+    let mut first: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+    let mut shared: FxHashSet<u32> = FxHashSet::default();
+    for v in mine {
+        let known = *first.entry(key(v)).or_insert(v);
+        shared.extend([known, v].into_iter().filter(|_| known != v));
+    }
+    let other = |v: &u32| used[*v as usize] && first.get(&key(*v)).is_some_and(|known| known != v);
+    let others: Vec<u32> = (0..used.len() as u32).into_par_iter().filter(other).collect();
+    shared.extend(others.into_iter().map(|v| first[&key(v)]));
     let touches = |t: &u32| mesh.triangles[*t as usize].iter().any(|v| shared.contains(v));
     if shared.is_empty() { Vec::new() } else { changed.iter().copied().filter(touches).collect() }
 }
@@ -80,9 +87,44 @@ pub(super) fn meeting(mesh: &TriMesh, h: f64, changed: &[u32], progress: &Progre
         }
     };
     let near: Vec<u32> = (0..mesh.triangles.len() as u32).into_par_iter().filter(|&t| is_near(t as usize)).collect();
-    let part = TriMesh {
-        positions: mesh.positions.clone(),
-        triangles: near.iter().map(|&t| mesh.triangles[t as usize]).collect(),
-    };
+    let part = part(&mesh.positions, near.iter().map(|&t| mesh.triangles[t as usize]));
     Ok(intersecting_triangles(&part, progress)?.into_iter().map(|t| near[t as usize]).collect())
+}
+
+/// Which of the triangles `bad`, ascending, meet, or share a place with, one that is `apart` from them.
+pub(super) fn touching(
+    mesh: &TriMesh,
+    bad: &[u32],
+    apart: impl Fn(u32, u32) -> bool,
+    progress: &Progress,
+) -> Result<Vec<u32>, Stopped> {
+    let part = part(&mesh.positions, bad.iter().map(|&t| mesh.triangles[t as usize]));
+    let pairs = self_intersections(&part, progress)?.into_iter().map(|pair| pair.map(|t| bad[t as usize]));
+    let mut all: Vec<u32> = pairs.filter(|&[a, b]| apart(a, b)).flatten().collect();
+    let mut at: FxHashMap<[u64; 3], Vec<u32>> = FxHashMap::default();
+    for &t in bad {
+        for p in mesh.corners(t as usize) {
+            at.entry((p + 0.0).to_array().map(f64::to_bits)).or_default().push(t);
+        }
+    }
+    all.extend(at.values().filter(|same| same[1..].iter().any(|&t| apart(same[0], t))).flatten());
+    all.sort_unstable();
+    all.dedup();
+    Ok(all)
+}
+
+/// Some triangles over `positions` as a mesh of their own, in the same order.
+pub(super) fn part(positions: &[DVec3], triangles: impl Iterator<Item = [u32; 3]>) -> TriMesh {
+    let mut part = TriMesh::default();
+    let mut number: FxHashMap<u32, u32> = FxHashMap::default();
+    for t in triangles {
+        let corners = t.map(|v| {
+            *number.entry(v).or_insert_with(|| {
+                part.positions.push(positions[v as usize]);
+                part.positions.len() as u32 - 1
+            })
+        });
+        part.triangles.push(corners);
+    }
+    part
 }

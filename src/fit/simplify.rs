@@ -3,15 +3,25 @@
 //! A vertex is moved into one of its neighbours, so that vertices stay where they were fitted. In
 //! each pass all vertices are judged in parallel and those that may go are taken in the order of
 //! their cost, as long as nothing near them has changed.
+//!
+//! Two things bound how far the surface goes: the distances from the planes of all triangles that went (`quadric`), and, since
+//! planes go on where surfaces end, how far each collapse takes the triangles around it from where they were (`deviation`), added
+//! up over all that led to a triangle.
+//!
+//! Triangles that meet are so rare that only the end result is looked at. Where some do, it is done again, and what happens near
+//! there (`zone`) is looked at after each pass and taken back if it makes triangles meet.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::FitOptions;
+use super::deviation::deviation;
 use super::facets::Facets;
 use super::quadric::Quadric;
+use super::safeguard::part;
 use super::surface::{Surface, agreement, shape};
-use crate::mesh::{HalfEdges, Shape, TriMesh, ValidateOptions, intersecting_triangles, validate};
+use super::zone::{Zone, meeting_places};
+use crate::mesh::{CollapseRecord, HalfEdges, TriMesh, ValidateOptions, intersecting_triangles, validate};
 use crate::progress::{Progress, Stopped};
 
 /// By how much a triangle may turn away from the facets of its corners (one minus the cosine,
@@ -33,7 +43,14 @@ const FLAT_HEIGHT: f64 = 0.02;
 /// Cosine of the most that a triangle over a crease may turn in one collapse.
 const STILL_FACING: f64 = 0.3;
 
-/// Times that neighbourhoods are frozen, each time twice as far.
+/// A collapse that takes the surface away by less than this part of the tolerance does not count: where a surface is finely cut,
+/// each is a quarter of the next, and together they are not much more than the last.
+const NOTHING: f64 = 0.05;
+
+/// Nor does less than so many steps of `f32`: that far from their plane the vertices of a flat part lie.
+const STEPS: f64 = 4.0;
+
+/// Rounds after which all of the surface is looked at after each pass.
 const MOST_ROUNDS: u32 = 6;
 
 /// Passes after which the rest stays.
@@ -47,10 +64,14 @@ struct Work<'a> {
     quadrics: Vec<Quadric>,
     /// Lattice units.
     at: Vec<DVec3>,
-    /// Squared tolerance, h².
+    /// How far each triangle is from the surface that it stands for, at most, h.
+    off: Vec<f32>,
+    /// The tolerance, h.
     most: f64,
     /// The same for vertices of the source.
     most_kept: f64,
+    /// A deviation that does not count, h.
+    nothing: f64,
 }
 
 /// A collapse that may be done.
@@ -61,28 +82,66 @@ struct Wish {
     half_edge: u32,
 }
 
-/// [`collapsed`] within the tolerance (0 for not at all) as often as it takes until no triangles meet:
-/// each time the neighbourhoods of those that do stay as they were. `None` when the surface as given is
-/// no valid solid.
+/// A collapse that was done where triangles may meet.
+struct Done {
+    vertex: u32,
+    to: u32,
+    record: CollapseRecord,
+    /// What the triangles around the vertex stood for before: those that stay, then the two that vanish.
+    off: Vec<(u32, f32)>,
+}
+
+/// A simplified surface.
+pub(super) struct Simple {
+    pub surface: Surface,
+    /// How far each triangle is from the surface that it stands for, at most, h.
+    pub off: Vec<f32>,
+}
+
+/// What is to be simplified, and how.
+struct Task<'a> {
+    surface: &'a Surface,
+    /// How far each triangle is already from the surface that it stands for, h.
+    off: &'a [f32],
+    facets: &'a Facets<'a>,
+    h: f64,
+    options: &'a FitOptions,
+}
+
+/// [`collapsed`] within the tolerance (0 for not at all), so that no triangles meet; `off` is how far each triangle is already from
+/// the surface that it stands for, h. `None` when the surface as given is no valid solid.
 pub(super) fn simplified(
-    surface: &Surface,
+    (surface, off): (&Surface, &[f32]),
     facets: &Facets<'_>,
     h: f64,
     options: &FitOptions,
     progress: &Progress,
-) -> Result<Option<Surface>, Stopped> {
-    let mut frozen = class_borders(surface, facets);
-    if options.tolerance > 0.0 {
-        for round in 0..MOST_ROUNDS {
-            let simple = collapsed(surface, facets, h, options, &frozen, progress)?;
-            let bad = intersecting_triangles(&simple.mesh, progress)?;
-            if bad.is_empty() && is_solid(&simple.mesh, false, progress)? {
-                return Ok(Some(simple));
+) -> Result<Option<Simple>, Stopped> {
+    let as_it_is = || {
+        let solid = is_solid(&surface.mesh, true, progress)?;
+        Ok(solid.then(|| Simple { surface: surface.clone(), off: off.to_vec() }))
+    };
+    if options.tolerance <= 0.0 {
+        return as_it_is();
+    }
+    let task = Task { surface, off, facets, h, options };
+    let frozen = class_borders(surface, facets);
+    let mut zone = Zone::nothing(h);
+    for round in 0..=MOST_ROUNDS {
+        let simple = collapsed(&task, (&frozen, &zone), progress)?;
+        let bad = intersecting_triangles(&simple.surface.mesh, progress)?;
+        if bad.is_empty() {
+            match is_solid(&simple.surface.mesh, false, progress)? {
+                true => return Ok(Some(simple)),
+                false => break,
             }
-            freeze(&mut frozen, surface, &simple, &bad, 2.0 * h * f64::from(1 << round));
+        }
+        zone.add(&meeting_places(&simple.surface.mesh, &bad, h, progress)?, h);
+        if round + 1 == MOST_ROUNDS {
+            zone = Zone::Everything;
         }
     }
-    Ok(is_solid(&surface.mesh, true, progress)?.then(|| surface.clone()))
+    as_it_is()
 }
 
 /// Whether the mesh is valid, also in a format that merges equal positions; without looking for
@@ -91,22 +150,6 @@ fn is_solid(mesh: &TriMesh, self_intersections: bool, progress: &Progress) -> Re
     let mut validity = validate(mesh, &ValidateOptions { self_intersections, weld: true }, progress)?;
     validity.self_intersecting_triangles.get_or_insert(0);
     Ok(validity.is_valid())
-}
-
-/// Freezes the vertices within `reach` of the triangles `bad` of the simplified surface.
-fn freeze(frozen: &mut [bool], surface: &Surface, simple: &Surface, bad: &[u32], reach: f64) {
-    let around = |&t: &u32| {
-        let corners = simple.mesh.corners(t as usize);
-        let bounds = corners.bounds();
-        (bounds.min - reach, bounds.max + reach, corners)
-    };
-    let boxes: Vec<(DVec3, DVec3, [DVec3; 3])> = bad.iter().map(around).collect();
-    let is_near = |p: DVec3, (low, high, corners): &(DVec3, DVec3, [DVec3; 3])| {
-        p.cmpge(*low).all() && p.cmple(*high).all() && corners.nearest(p).0.distance(p) <= reach
-    };
-    frozen.par_iter_mut().zip(&surface.mesh.positions).for_each(|(frozen, p)| {
-        *frozen |= boxes.iter().any(|one| is_near(*p, one));
-    });
 }
 
 /// The vertices between triangles of different classes.
@@ -124,30 +167,29 @@ fn class_borders(surface: &Surface, facets: &Facets<'_>) -> Vec<bool> {
     border
 }
 
-/// Collapses edges as long as the surface stays within the tolerance of where it was. Vertices in `frozen` stay.
-fn collapsed(
-    surface: &Surface,
-    facets: &Facets<'_>,
-    h: f64,
-    options: &FitOptions,
-    frozen: &[bool],
-    progress: &Progress,
-) -> Result<Surface, Stopped> {
-    let Ok(edges) = HalfEdges::new(&surface.mesh.triangles, surface.mesh.positions.len()) else {
-        return Ok(surface.clone());
+/// Collapses edges as long as the surface stays within the tolerance of where it was. Vertices in `frozen` stay, and within the
+/// zone no triangles meet afterwards.
+fn collapsed(task: &Task<'_>, (frozen, zone): (&[bool], &Zone), progress: &Progress) -> Result<Simple, Stopped> {
+    let &Task { surface, off, .. } = task;
+    let Some(mut work) = Work::new(task) else {
+        return Ok(Simple { surface: surface.clone(), off: off.to_vec() });
     };
-    let at: Vec<DVec3> = surface.mesh.positions.par_iter().map(|p| *p / h).collect();
-    let quadrics = quadrics(surface, facets, h, &edges);
-    let (most, most_kept) = (options.tolerance.powi(2), options.kept_tolerance.powi(2));
-    let mut work = Work { surface, facets, edges, quadrics, at, most, most_kept };
+    let mut frozen = frozen.to_vec();
     let mut active: Vec<u32> = (0..work.at.len() as u32).filter(|&v| !frozen[v as usize]).collect();
     let mut locked = vec![0u32; work.at.len()];
+    let corners = |t: &[u32; 3]| t.map(|v| surface.at(v));
+    let watched = |t: &[u32; 3]| zone.touches(corners(t));
+    let mut in_zone: Vec<bool> = match zone.is_nothing() {
+        true => Vec::new(),
+        false => surface.mesh.triangles.par_iter().map(watched).collect(),
+    };
     for pass in 1..=MOST_PASSES as u32 {
         progress.check()?;
         let mut wishes: Vec<Wish> = active.par_iter().with_min_len(64).filter_map(|&v| work.wish(v)).collect();
         wishes.par_sort_unstable_by(|a, b| a.cost.total_cmp(&b.cost).then(a.half_edge.cmp(&b.half_edge)));
-        let mut done = 0;
+        let mut collapses = 0;
         let mut next = Vec::new();
+        let mut done: Vec<Done> = Vec::new();
         for wish in &wishes {
             let vertex = wish.vertex;
             if locked[vertex as usize] == pass {
@@ -155,26 +197,34 @@ fn collapsed(
                 continue;
             }
             let ring: Vec<u32> = work.edges.ring(vertex).map(|e| work.edges.target(e)).collect();
-            if work.collapse(wish.half_edge) {
-                done += 1;
+            let star: Vec<u32> =
+                if in_zone.is_empty() { Vec::new() } else { work.edges.ring(vertex).map(|e| e / 3).collect() };
+            let before = (!star.is_empty()).then(|| work.done(wish, &star));
+            if work.collapse(wish) {
+                collapses += 1;
                 ring.iter().for_each(|&v| locked[v as usize] = pass);
                 next.extend(ring);
+                let Some(before) = before else { continue };
+                let changed = before.record.changed();
+                changed.iter().for_each(|&t| in_zone[t as usize] |= watched(&work.edges.triangle(t)));
+                if changed.iter().any(|&t| in_zone[t as usize]) {
+                    done.push(before);
+                }
             }
         }
-        if done == 0 {
+        if !done.is_empty() {
+            for vertex in work.take_back(done, &in_zone, progress)? {
+                frozen[vertex as usize] = true;
+            }
+        }
+        if collapses == 0 {
             break;
         }
         next.par_sort_unstable();
         next.dedup();
         active = next.into_iter().filter(|&v| !frozen[v as usize] && work.edges.is_live_vertex(v)).collect();
     }
-    let compacted = work.edges.compacted();
-    let positions = compacted.vertices.iter().map(|&v| surface.at(v)).collect();
-    let sides = compacted.vertices.iter().map(|&v| surface.sides[v as usize]).collect();
-    let kept = compacted.vertices.iter().map(|&v| surface.kept[v as usize]).collect();
-    let live = (0..work.edges.triangle_ids()).filter(|&t| work.edges.is_live_triangle(t as u32));
-    let facets = live.map(|t| surface.facets[t]).collect();
-    Ok(Surface { mesh: TriMesh { positions, triangles: compacted.triangles }, sides, kept, facets })
+    Ok(work.finish())
 }
 
 /// For each vertex the distances from the planes of its triangles.
@@ -205,7 +255,77 @@ fn plane(surface: &Surface, facets: &Facets<'_>, h: f64, t: usize) -> Option<(DV
     }
 }
 
-impl Work<'_> {
+impl<'a> Work<'a> {
+    /// `None` when the surface is no closed manifold.
+    fn new(task: &Task<'a>) -> Option<Self> {
+        let &Task { surface, off, facets, h, options } = task;
+        let edges = HalfEdges::new(&surface.mesh.triangles, surface.mesh.positions.len()).ok()?;
+        let at: Vec<DVec3> = surface.mesh.positions.par_iter().map(|p| *p / h).collect();
+        let quadrics = quadrics(surface, facets, h, &edges);
+        let largest = at.par_iter().map(|p| p.abs().max_element()).reduce(|| 0.0, f64::max);
+        let nothing = (NOTHING * options.tolerance).max(STEPS * f64::from(f32::EPSILON) * largest);
+        Some(Self {
+            surface,
+            facets,
+            edges,
+            quadrics,
+            off: off.to_vec(),
+            at,
+            most: options.tolerance,
+            most_kept: options.kept_tolerance,
+            nothing,
+        })
+    }
+
+    fn finish(self) -> Simple {
+        let Self { surface, edges, .. } = self;
+        let compacted = edges.compacted();
+        let positions = compacted.vertices.iter().map(|&v| surface.at(v)).collect();
+        let sides = compacted.vertices.iter().map(|&v| surface.sides[v as usize]).collect();
+        let kept = compacted.vertices.iter().map(|&v| surface.kept[v as usize]).collect();
+        let live = (0..edges.triangle_ids()).filter(|&t| edges.is_live_triangle(t as u32));
+        let (facets, off) = live.map(|t| (surface.facets[t], self.off[t])).unzip();
+        Simple {
+            surface: Surface { mesh: TriMesh { positions, triangles: compacted.triangles }, sides, kept, facets },
+            off,
+        }
+    }
+
+    /// What is needed to take a collapse back that is about to be done.
+    fn done(&self, wish: &Wish, star: &[u32]) -> Done {
+        Done {
+            vertex: wish.vertex,
+            to: self.edges.target(wish.half_edge),
+            record: self.edges.record(wish.half_edge),
+            off: star.iter().map(|&t| (t, self.off[t as usize])).collect(),
+        }
+    }
+
+    /// Takes collapses of one pass back that made triangles meet; none met before. Returns the vertices that are there again.
+    fn take_back(&mut self, mut done: Vec<Done>, in_zone: &[bool], progress: &Progress) -> Result<Vec<u32>, Stopped> {
+        let mut back = Vec::new();
+        loop {
+            let live = |t: &u32| in_zone[*t as usize] && self.edges.is_live_triangle(*t);
+            let near: Vec<u32> = (0..in_zone.len() as u32).into_par_iter().filter(live).collect();
+            let part = part(&self.surface.mesh.positions, near.iter().map(|&t| self.edges.triangle(t)));
+            let mut bad = vec![false; in_zone.len()];
+            intersecting_triangles(&part, progress)?.iter().for_each(|&t| bad[near[t as usize] as usize] = true);
+            let harmful = |one: &Done| one.record.changed().iter().any(|&t| bad[t as usize]);
+            let (gone, stay): (Vec<Done>, Vec<Done>) = done.into_iter().partition(harmful);
+            if gone.is_empty() {
+                return Ok(back);
+            }
+            for one in gone {
+                let quadric = self.quadrics[one.vertex as usize];
+                self.quadrics[one.to as usize] -= quadric;
+                self.edges.undo(&one.record);
+                one.off.iter().for_each(|&(t, off)| self.off[t as usize] = off);
+                back.push(one.vertex);
+            }
+            done = stay;
+        }
+    }
+
     /// The best collapse of a vertex into a neighbour.
     fn wish(&self, vertex: u32) -> Option<Wish> {
         if !self.edges.is_live_vertex(vertex) {
@@ -216,7 +336,7 @@ impl Work<'_> {
             let to = self.edges.target(e);
             let cost = self.cost(vertex, to);
             let entry = (cost, self.at[to as usize].distance_squared(self.at[vertex as usize]), e);
-            if cost <= self.most && self.edges.valence(to) < MOST_EDGES {
+            if cost <= self.most * self.most && self.edges.valence(to) < MOST_EDGES {
                 let place = best.iter().position(|b| entry.0 < b.0 || (entry.0 == b.0 && entry.1 < b.1));
                 if let Some(k) = place {
                     best[k..].rotate_right(1);
@@ -225,18 +345,22 @@ impl Work<'_> {
             }
         }
         let worst = self.worst(vertex);
-        best.iter().take_while(|b| b.0.is_finite()).find(|b| self.allowed(vertex, b.2, worst)).map(|b| Wish {
-            cost: b.0,
-            vertex,
-            half_edge: b.2,
-        })
+        let fits = |b: &&(f64, f64, u32)| self.allowed(vertex, b.2, worst) && self.after(b.2, |_| ()).is_some();
+        best.iter().take_while(|b| b.0.is_finite()).find(fits).map(|b| Wish { cost: b.0, vertex, half_edge: b.2 })
+    }
+
+    /// How far the triangles around the origin of a half-edge would be from the surface that they stand for when it has gone; `None`
+    /// for too far.
+    fn after(&self, half_edge: u32, result: impl FnMut(f64)) -> Option<()> {
+        let most = self.most.max(self.nothing);
+        deviation((&self.edges, &self.at, &self.off), half_edge, (self.nothing, most), result)
     }
 
     /// What it costs to move `vertex` into `to`. Coarse, so that on flat parts the shortest edges go first.
     fn cost(&self, vertex: u32, to: u32) -> f64 {
         let p = self.at[to as usize];
         let cost = self.quadrics[vertex as usize].at(p) + self.quadrics[to as usize].at(p);
-        if self.surface.is_kept(vertex) && (cost > self.most_kept || self.most_kept == 0.0) {
+        if self.surface.is_kept(vertex) && (self.most_kept == 0.0 || cost > self.most_kept * self.most_kept) {
             return f64::INFINITY;
         }
         let length = p.distance_squared(self.at[vertex as usize]);
@@ -297,16 +421,23 @@ impl Work<'_> {
         (worst, height)
     }
 
-    fn collapse(&mut self, half_edge: u32) -> bool {
-        if !self.edges.can_collapse(half_edge) {
+    fn collapse(&mut self, wish: &Wish) -> bool {
+        let &Wish { vertex, half_edge, .. } = wish;
+        let to = self.edges.target(half_edge);
+        if !self.edges.can_collapse(half_edge) || self.cost(vertex, to) > self.most * self.most {
             return false;
         }
-        let (vertex, to) = (self.edges.origin(half_edge), self.edges.target(half_edge));
-        if self.cost(vertex, to) > self.most {
+        let mut after = Vec::with_capacity(self.edges.valence(vertex));
+        if self.after(half_edge, |off| after.push(off as f32)).is_none() {
             return false;
         }
         let quadric = self.quadrics[vertex as usize];
         self.quadrics[to as usize] += quadric;
+        let mut e = half_edge;
+        for off in after {
+            e = self.edges.twin(self.edges.prev(e));
+            self.off[e as usize / 3] = off;
+        }
         self.edges.collapse_unchecked(half_edge);
         true
     }

@@ -32,7 +32,9 @@ pub fn simplified_source(
         facets: vec![NOT_KEPT; mesh.triangles.len()],
     };
     let options = FitOptions { tolerance: options.kept_tolerance, ..*options };
-    let Some(simple) = simplified(&surface, &facets, h, &options, progress)? else { return Ok(None) };
+    let untouched = vec![0.0; mesh.triangles.len()];
+    let simple = simplified((&surface, &untouched), &facets, h, &options, progress)?;
+    let Some(simple) = simple.map(|simple| simple.surface) else { return Ok(None) };
     let of = (0..simple.mesh.triangles.len() as u32).map(|t| simple.facet(&facets, t)).collect();
     Ok(Some((simple.mesh, of)))
 }

@@ -27,6 +27,26 @@ pub struct Compacted {
     pub vertices: Vec<u32>,
 }
 
+/// How to take a collapse back; see [`HalfEdges::undo`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CollapseRecord {
+    half_edge: u32,
+    other: u32,
+    /// The two triangles that vanish.
+    removed: [[u32; 3]; 2],
+    /// The half-edges across them that lie in the star.
+    inner: [u32; 2],
+    /// The other triangles of the star.
+    star: Vec<u32>,
+}
+
+impl CollapseRecord {
+    /// The triangles around the removed vertex that stay, with the vertex it went into as a corner.
+    pub fn changed(&self) -> &[u32] {
+        &self.star
+    }
+}
+
 /// The triangles of a closed, oriented 2-manifold with the twin of each half-edge. Every operation takes constant time
 /// but for the rings it visits. Ids stay what they are under all operations; what is removed leaves a
 /// gap until [`HalfEdges::compacted`].
@@ -256,6 +276,44 @@ impl HalfEdges {
         self.outgoing[c as usize] = next;
         self.outgoing[d as usize] = other_next;
         kept
+    }
+
+    /// What [`HalfEdges::undo`] needs to take the collapse of this edge back, to be asked for before.
+    pub fn record(&self, half_edge: u32) -> CollapseRecord {
+        let (h, o) = (half_edge, self.twin(half_edge));
+        CollapseRecord {
+            half_edge,
+            other: o,
+            removed: [self.triangle(h / 3), self.triangle(o / 3)],
+            inner: [self.twin(self.prev(h)), self.twin(self.next(o))],
+            star: self.ring(self.origin(h)).map(|e| e / 3).filter(|t| ![h / 3, o / 3].contains(t)).collect(),
+        }
+    }
+
+    /// Takes a collapse back. Since then nothing else may have changed the triangles that were around the removed vertex; those
+    /// beside them may be others.
+    pub fn undo(&mut self, record: &CollapseRecord) {
+        let CollapseRecord { half_edge: h, other: o, removed, inner: [prev, other_next], ref star } = *record;
+        let (next, other_prev) = (self.twin(prev), self.twin(other_next));
+        self.triangles[h as usize / 3] = removed[0];
+        self.triangles[o as usize / 3] = removed[1];
+        let (vertex, kept) = (self.origin(h), self.target(h));
+        for &t in star {
+            self.triangles[t as usize].iter_mut().filter(|v| **v == kept).for_each(|v| *v = vertex);
+        }
+        self.join(h, o);
+        self.join(self.next(h), next);
+        self.join(self.prev(h), prev);
+        self.join(self.next(o), other_next);
+        self.join(self.prev(o), other_prev);
+        self.outgoing[vertex as usize] = h;
+        self.outgoing[kept as usize] = o;
+        let (c, d) = (self.apex(h), self.apex(o));
+        self.valence[vertex as usize] = star.len() as u32 + 2;
+        self.valence[kept as usize] = self.valence[kept as usize] + 4 - self.valence[vertex as usize];
+        self.valence[c as usize] += 1;
+        self.valence[d as usize] += 1;
+        self.live_triangles += 2;
     }
 
     /// Whether the edge can be turned in the quadrilateral of its two triangles: the new edge does not exist yet and

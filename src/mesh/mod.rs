@@ -24,7 +24,7 @@ pub(crate) mod weld;
 
 pub use closest::{Closest, ClosestTree};
 pub use defects::{Defects, defects};
-pub use half_edges::{Compacted, HalfEdges, NotManifold, Ring};
+pub use half_edges::{CollapseRecord, Compacted, HalfEdges, NotManifold, Ring};
 pub use nearest_point::{Feature, Shape};
 pub use plane::Plane;
 pub use pseudonormals::Pseudonormals;

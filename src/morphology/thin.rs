@@ -20,6 +20,10 @@ const MOST_STEPS: usize = 40;
 /// surface is made of, balls may look out a little.
 const WITHIN: f64 = 0.1;
 
+/// Of balls that touch the surface at one point, each this many times larger than the one before, every point that is within a
+/// ball between them is within one of them by more than [`WITHIN`], too, if it lies ahead.
+const LADDER: f64 = 8.0;
+
 /// A ball smaller than this, h, is no wall but an edge of the surface.
 const SMALLEST: f64 = 1e-3;
 
@@ -121,8 +125,7 @@ impl Walls<'_> {
 
     /// The largest ball, up to the radius, that touches the surface at `p` from inside.
     fn at(&self, p: DVec3, normal: DVec3) -> Behind {
-        // Of a wall as thick as the ball, the other side is only seen by one that is this much larger.
-        let mut r = self.radius / (1.0 - WITHIN / 2.0);
+        let Some(mut r) = self.first(p, normal) else { return Behind::Thick };
         let mut other = None;
         for _ in 0..MOST_STEPS {
             let Some(near) = self.body.distance().within(p - normal * r, r * (1.0 - WITHIN)) else { break };
@@ -139,6 +142,16 @@ impl Walls<'_> {
         let centre = p - normal * r;
         let faces = normal.dot((other - centre).normalize_or_zero()) < FACING;
         if faces && r > SMALLEST * self.h { Behind::Wall(centre) } else { Behind::Edge }
+    }
+
+    /// The radius of the smallest ball of the ladder that touches the surface at `p` and has more of it within. A much larger
+    /// one would not see the other side of a thin wall: it comes out on that side, and there touches the wall all but at `p`.
+    fn first(&self, p: DVec3, normal: DVec3) -> Option<f64> {
+        // Of a wall as thick as the ball, the other side is only seen by one that is this much larger.
+        let largest = self.radius / (1.0 - WITHIN / 2.0);
+        let steps = (largest / (SMALLEST * self.h)).log(LADDER).ceil().max(0.0) as i32;
+        let mut radii = (0..=steps).rev().map(|k| largest / LADDER.powi(k));
+        radii.find(|r| self.body.distance().within(p - normal * *r, r * (1.0 - WITHIN)).is_some())
     }
 }
 

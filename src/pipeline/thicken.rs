@@ -16,6 +16,10 @@ use crate::progress::{Progress, Stopped};
 /// Walls are at least this many voxels thick: of less the lattice makes no round edge.
 const LEAST_VOXELS: f64 = 4.0;
 
+/// Walls are at most this many times as thick as the model is long: of more nothing of its shape would be left, and the lattice for
+/// it would be mostly that.
+const MOST_LENGTHS: f64 = 2.0;
+
 /// Triangles of the input that are farther than this, h, from the solid's surface are open sheets.
 const APART: f64 = 1.0;
 
@@ -63,16 +67,27 @@ pub struct ThickenReport {
 ///
 /// # Errors
 /// Those of [`boolean`], but for a surface that encloses nothing; [`Error::VoxelSize`] for a thickness that the lattice
-/// cannot hold.
+/// cannot hold, or that is more than twice the model's longest side.
 pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -> Result<Outcome, Error> {
     let least = usable(options.least)?;
     let frame = Frame::of(std::slice::from_ref(input));
     let input = &frame.local(std::slice::from_ref(input))[0];
-    let h = prepare::lattice(&prepare::bounds(std::slice::from_ref(input))?, options.solid.voxel)?.h;
+    let bounds = prepare::bounds(std::slice::from_ref(input))?;
+    let h = prepare::lattice(&bounds, options.solid.voxel)?.h;
     if least < LEAST_VOXELS * h {
         let fits = least / LEAST_VOXELS;
         return Err(Error::VoxelSize {
             reason: format!("walls of {least} need a voxel of at most {fits:.4}, and it is {h:.4}"),
+        });
+    }
+    let longest = bounds.size().max_element();
+    if least > MOST_LENGTHS * longest {
+        return Err(Error::VoxelSize {
+            reason: format!(
+                "walls of {least} are more than {MOST_LENGTHS} times as thick as the model is long ({longest}), so nothing of its \
+                 shape would be left: look at the unit, or use at most {}",
+                MOST_LENGTHS * longest
+            ),
         });
     }
     let fixed = Options { voxel: VoxelSize::Length(h), ..options.solid.clone() };
