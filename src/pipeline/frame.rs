@@ -10,8 +10,11 @@ use crate::lattice::Lattice;
 use crate::mesh::{Bounds, TriMesh};
 use crate::vote::VoteReport;
 
-/// Where the pipelines' origin lies, model units. Along an axis on which the operands lie farther away than they are large, it
-/// is moved beside them. There, taking it off a coordinate and adding it again is exact in `f64`: the two are within a
+/// Operands farther away than so many times their longest side are far. Nearer ones stay where they are: there single precision still
+/// resolves half a millionth of them, and what is made has coordinates that STL holds.
+const FAR: f64 = 16.0;
+
+/// Where the pipelines' origin lies, model units. Along an axis on which the operands lie far away, it is moved beside them. There, taking it off a coordinate and adding it again is exact in `f64`: the two are within a
 /// factor of two of each other (Sterbenz). Along the others single precision resolves the operands as they are.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Frame {
@@ -22,13 +25,14 @@ impl Frame {
     /// The frame of operands in a box.
     pub(super) fn around(bounds: &Bounds) -> Self {
         // A multiple of a power of two, so that most sums with it are exact, too.
-        let unit = 2f64.powi(bounds.size().max_element().max(f64::MIN_POSITIVE).log2().floor() as i32);
+        let longest = bounds.size().max_element();
+        let unit = 2f64.powi(longest.max(f64::MIN_POSITIVE).log2().floor() as i32);
         let origin = |low: f64, high: f64| {
             let (near, far) = (low.abs().min(high.abs()), low.abs().max(high.abs()));
             let is_within = |c: f64| near >= c.abs() / 2.0 && far <= 2.0 * c.abs();
             let middle = low / 2.0 + high / 2.0;
             let round = (middle / unit).round() * unit;
-            let is_far = low.signum() == high.signum() && far <= 2.0 * near && far < f64::MAX;
+            let is_far = low.signum() == high.signum() && far > FAR * longest && far < f64::MAX;
             [round, middle].into_iter().find(|&c| is_far && is_within(c)).unwrap_or(0.0)
         };
         let (low, high) = (bounds.min, bounds.max);
@@ -127,10 +131,10 @@ mod tests {
                 prop_assert_eq!((*p - frame.origin) + frame.origin, *p);
             }
             let local = frame.local_bounds(&bounds);
-            // Whatever the axis, what is left is no larger than twice the operands.
+            // Whatever the axis, what is left is not far.
             let longest = bounds.size().max_element();
             let farthest = local.min.abs().max(local.max.abs()).max_element();
-            prop_assert!(farthest <= 2.0 * longest, "{farthest} of {longest}");
+            prop_assert!(farthest <= FAR * longest, "{farthest} of {longest}");
         }
     }
 }
