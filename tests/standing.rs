@@ -315,3 +315,46 @@ fn simplification_by_hand_means_what_stands_as_well() {
     assert_eq!((simple.mesh.triangles.len(), judged(&simple.mesh).volume), (12, 1.0));
     assert!(!simple.report.lattice);
 }
+
+#[test]
+fn a_body_that_crosses_itself_beside_others_leaves_them_as_they_are() {
+    // A box and a box through its corner cross; two balls stand a fifth of a voxel beside them.
+    let h = 4.0 / 64.0;
+    let crossing = [cuboid(DVec3::ZERO, DVec3::ONE), cuboid(DVec3::splat(0.6), DVec3::splat(1.5))];
+    let balls = [ball(DVec3::new(-0.5 - 0.2 * h, 0.5, 0.5), 0.5, 10), ball(DVec3::new(3.0, 0.5, 0.5), 0.5, 10)];
+    let mesh = joined(crossing.into_iter().chain(balls.clone()));
+    let outcome = repaired(&mesh, &at(64));
+    let validity = judged(&outcome.mesh);
+    let boxes = 1.0 + 0.9f64.powi(3) - 0.4f64.powi(3);
+    let volume = boxes + balls.iter().map(|ball| judged(ball).volume).sum::<f64>();
+    assert_eq!((validity.bodies, outcome.report.standing.shells), (3, 2));
+    assert!((validity.volume - volume).abs() < 1e-3, "{} and {volume}", validity.volume);
+    assert_eq!(outcome.report.topology.map(|t| (t.fused, t.lost_count)), Some((0, 0)));
+}
+
+#[test]
+fn bodies_smaller_than_a_voxel_far_apart_come_back_the_right_way_round() {
+    let small = |at: f64| ball(DVec3::X * at, 0.004, 6);
+    let mesh = joined([small(0.0), small(10.0)]);
+    for resolution in [16, 64, 256] {
+        assert_eq!(repaired(&inside_out(mesh.clone()), &at(resolution)).mesh, mesh);
+    }
+}
+
+#[test]
+fn many_bodies_are_as_quick_as_their_triangles() {
+    // A grid of ten thousand boxes: nothing may grow with the square of their number.
+    let place = |n: usize| DVec3::new((n % 100) as f64, (n / 100) as f64, (n % 7) as f64 * 0.1);
+    let mesh = joined((0..10_000).map(|n| cuboid(place(n), place(n) + 0.5)));
+    let start = std::time::Instant::now();
+    assert_eq!(repaired(&mesh, &at(64)).mesh, mesh);
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+}
+
+#[test]
+fn two_coincident_skins_are_one_and_told() {
+    let skins = joined([ball(DVec3::ZERO, 1.0, 12), ball(DVec3::ZERO, 1.0 - 1e-6, 12)]);
+    let outcome = repaired(&skins, &at(64));
+    assert_eq!(outcome.mesh.triangles.len(), skins.triangles.len() / 2);
+    assert_eq!((outcome.report.standing.shells, outcome.report.standing.left_out), (1, 1));
+}

@@ -183,7 +183,8 @@ fn power_of_two(bounds: &Bounds) -> f64 {
     }
 }
 
-fn tree_over(boxes: &[Aabb]) -> Bvh2 {
+/// A tree over boxes, quickly built.
+pub(crate) fn tree_over(boxes: &[Aabb]) -> Bvh2 {
     let params = BvhBuildParams::fast_build();
     PlocBuilder::with_capacity(boxes.len()).build(
         params.ploc_search_distance,

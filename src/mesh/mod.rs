@@ -22,6 +22,7 @@ mod triangle_pair;
 mod validity;
 pub(crate) mod weld;
 
+pub(crate) use closest::tree_over;
 pub use closest::{Closest, ClosestTree};
 pub use defects::{Defects, defects};
 pub use half_edges::{CollapseRecord, Compacted, HalfEdges, NotManifold, Ring};

@@ -5,6 +5,7 @@
 //! shell needs no ray, no vote and no voxel: [`standing`] finds the shells that stay as they are, and only the
 //! others go on to the lattice.
 
+mod boxes;
 mod contacts;
 mod standing;
 mod winding;

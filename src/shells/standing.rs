@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::boxes::Boxes;
 use super::winding::{around, solid_angle};
 use super::{Contacts, Kind, Shell, Shells};
 use crate::ldi::Expression;
@@ -73,7 +74,8 @@ pub fn standing(
     if free.is_empty() {
         return Ok(fates);
     }
-    let scene = Scene { mesh, shells: &shells.list, free: &free, scale: scale_of_mesh(mesh), options };
+    let boxes = &Boxes::new(&shells.list);
+    let scene = Scene { mesh, shells: &shells.list, free: &free, boxes, scale: scale_of_mesh(mesh), options };
     let mut holders = vec![false; count];
     for holder in scene.holders(progress)? {
         holders[holder] = true;
@@ -101,6 +103,7 @@ struct Scene<'a> {
     mesh: &'a TriMesh,
     shells: &'a [Shell],
     free: &'a [usize],
+    boxes: &'a Boxes,
     scale: f64,
     options: &'a StandingOptions<'a>,
 }
@@ -124,39 +127,35 @@ impl Scene<'_> {
         let holders_of = |&other: &usize| {
             progress.check()?;
             let p = self.point(other);
-            let holds = |&&n: &&usize| around(self.mesh, &self.shells[n], p, self.scale) != Some(0);
-            Ok(self.free.iter().filter(holds).copied().collect::<Vec<_>>())
+            let holds = |&n: &usize| self.is_free(n) && around(self.mesh, &self.shells[n], p, self.scale) != Some(0);
+            Ok(self.boxes.around(p).into_iter().filter(holds).collect::<Vec<_>>())
         };
         Ok(others.par_iter().map(holders_of).collect::<Result<Vec<_>, Stopped>>()?.concat())
     }
 
     fn places(&self, progress: &Progress) -> Result<Vec<Surroundings>, Stopped> {
-        let of = |(k, &n): (usize, &usize)| {
+        let of = |&n: &usize| {
             progress.check()?;
-            Ok(self.surroundings(k, self.point(n)))
+            Ok(self.surroundings(n, self.point(n)))
         };
-        self.free.par_iter().enumerate().map(of).collect()
+        self.free.par_iter().map(of).collect()
     }
 
     fn surroundings(&self, own: usize, p: DVec3) -> Surroundings {
         let mut within = Vec::new();
-        for (k, &n) in self.free.iter().enumerate().filter(|&(k, _)| k != own) {
-            match around(self.mesh, &self.shells[n], p, self.scale) {
-                Some(0) => {}
-                Some(_) => within.push(k),
-                None => return Surroundings::default(),
-            }
-        }
         let mut whole = vec![0i32; self.options.operands];
         let mut open = vec![0f64; self.options.operands];
-        for (_, shell) in self.shells.iter().enumerate().filter(|&(n, _)| !self.is_free(n)) {
-            if shell.balanced {
-                match around(self.mesh, shell, p, self.scale) {
-                    Some(n) => whole[shell.operand] += n,
-                    None => return Surroundings { within, others: None },
-                }
-            } else {
+        for n in self.boxes.around(p).into_iter().filter(|&n| n != own) {
+            let shell = &self.shells[n];
+            if !shell.balanced {
                 open[shell.operand] += solid_angle(self.mesh, shell, p);
+                continue;
+            }
+            match (around(self.mesh, shell, p, self.scale), self.free.binary_search(&n)) {
+                (Some(0), _) => {}
+                (Some(_), Ok(k)) => within.push(k),
+                (Some(times), Err(_)) => whole[shell.operand] += times,
+                (None, _) => return Surroundings::default(),
             }
         }
         let sure = open.iter().all(|w| (w - w.round()).abs() < WHOLE);

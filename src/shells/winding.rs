@@ -52,13 +52,19 @@ fn side_of_moved(a: DVec2, b: DVec2, p: DVec2) -> i32 {
     }
 }
 
-/// A shell seen from farther than this many times its own size winds around nothing worth counting.
-const FAR: f64 = 4.0;
+/// An open shell that covers less than this part of what is seen from a point winds around it too little to count.
+const SMALL: f64 = 1.0 / 16.0;
+
+/// How far from its box an open shell winds around points at all, model units: beyond, its area over that of a ball of this radius is
+/// less than [`SMALL`].
+pub(super) fn reach(shell: &Shell) -> f64 {
+    (shell.area / (4.0 * PI * SMALL)).sqrt()
+}
 
 /// The solid angle of a shell seen from `p`, as a part of the whole: the generalised winding number.
 pub(super) fn solid_angle(mesh: &TriMesh, shell: &Shell, p: DVec3) -> f64 {
     let off = (shell.bounds.min - p).max(p - shell.bounds.max).max(DVec3::ZERO).length();
-    if off * off * 4.0 * PI > FAR * FAR * shell.area {
+    if off > reach(shell) {
         return 0.0;
     }
     let angle = |t: u32| {
