@@ -53,7 +53,7 @@ const OFFSET_AND_BACK: Rates =
     Rates { base: 75e6, cell: 0.0, triangle: 30.0, lid: 9000.0, bend: 5500.0, side: 0.0, voxel: 215.0 };
 /// One, where walls are thin.
 const THICKENED: Rates =
-    Rates { base: 13e6, cell: 1200.0, triangle: 0.0, lid: 5600.0, bend: 2760.0, side: 0.0, voxel: 0.0 };
+    Rates { base: 22e6, cell: 1100.0, triangle: 0.0, lid: 5000.0, bend: 2000.0, side: 0.0, voxel: 0.0 };
 
 /// The band of an offset is this much wider than its radius, h.
 const OFFSET_MARGIN: f64 = 4.0;
