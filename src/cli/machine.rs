@@ -13,6 +13,9 @@ const RESERVE: u64 = 24 << 20;
 /// A run may take this many times its `--max-memory` before it is ended: its estimate may be wrong by as much.
 const BEYOND_CAP: f64 = 1.25;
 
+/// A smaller cap is refused with the plan, before the work; the program itself is larger.
+const LEAST_CAP: u64 = 64 << 20;
+
 /// What a run may take in all, bytes: what the user allows, or what the process has and what is free.
 pub fn memory_cap(asked: Option<u64>) -> Option<u64> {
     asked.or_else(|| Some(resident()? + free_memory()?))
@@ -21,7 +24,7 @@ pub fn memory_cap(asked: Option<u64>) -> Option<u64> {
 /// Why a run must end now, if it must: its memory is more than it may take.
 pub fn shortage(max_memory: Option<u64>) -> Option<Failure> {
     let taken = resident()?;
-    if let Some(cap) = max_memory.filter(|&cap| taken as f64 > BEYOND_CAP * cap as f64) {
+    if let Some(cap) = max_memory.filter(|&cap| is_beyond(taken, cap)) {
         let (taken, cap) = (words::bytes(taken), words::bytes(cap));
         let message =
             format!("the run has taken {taken} of memory, and --max-memory allows {cap}; no output was written");
@@ -32,6 +35,10 @@ pub fn shortage(max_memory: Option<u64>) -> Option<Failure> {
     let message =
         format!("the memory is used up: the run has taken {taken}, and {left} are left; no output was written");
     Some(Failure::new(Exit::Memory, message).hint("a lower --resolution, a larger voxel, or fewer --threads"))
+}
+
+fn is_beyond(taken: u64, cap: u64) -> bool {
+    taken as f64 > BEYOND_CAP * cap.max(LEAST_CAP) as f64
 }
 
 /// Why there can be no more of something.
@@ -189,14 +196,23 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn a_cap_that_is_passed_by_far_ends_the_run_and_the_usual_one_does_not() {
+    fn the_usual_cap_is_what_is_there_and_what_is_free() {
         let taken = resident().expect("the system tells");
         assert!(memory_cap(None).is_some_and(|cap| cap > taken));
         assert_eq!(memory_cap(Some(7)), Some(7));
-        assert!(shortage(Some(2 * taken)).is_none());
-        let failure = shortage(Some(taken / 2)).expect("it is passed");
-        assert_eq!(failure.exit, Exit::Memory);
+        assert!(shortage(None).is_none() && shortage(Some(1 << 40)).is_none());
+        let held = vec![1u8; 100 << 20];
+        let failure = shortage(Some(1)).expect("more is taken than the least cap");
+        assert_eq!((failure.exit, held[held.len() / 2]), (Exit::Memory, 1));
         assert!(failure.message.contains("--max-memory"), "{failure}");
+    }
+
+    #[test]
+    fn a_cap_that_is_passed_by_far_ends_the_run() {
+        let cap = 1_000_000_000;
+        assert!(!is_beyond(cap, cap) && !is_beyond(cap / 5 * 6, cap) && is_beyond(cap / 4 * 5 + 1, cap));
+        // Below the program's own size the plan decides.
+        assert!(!is_beyond(50_000_000, 1));
     }
 
     #[test]

@@ -19,8 +19,8 @@ use crate::vote::{Jury, VoteReport, VoteRule, Winding, doubts, vote_near_surface
 
 /// Bytes per h² of surface and per triangle that are there besides the field, for each way to the sides.
 const VOTES_BYTES: [f64; 2] = [190.0, 540.0];
-const WINDING_BYTES: [f64; 2] = [355.0, 210.0];
-const LEVELS_BYTES: [f64; 2] = [185.0, 180.0];
+const WINDING_BYTES: [f64; 2] = [220.0, 100.0];
+const LEVELS_BYTES: [f64; 2] = [130.0, 50.0];
 const ROBUST_BYTES: [f64; 2] = [480.0, 270.0];
 /// Bytes per stored voxel of the marched field: the field, what is done, and the front.
 const MARCHED_BYTES: f64 = 10.5;

@@ -40,6 +40,8 @@ struct Rates {
 /// Most triangles stay as they are.
 const KEPT: Rates =
     Rates { base: 11.5e6, cell: 1110.0, triangle: 600.0, lid: 2100.0, bend: 0.0, side: 85.0, voxel: 0.0 };
+/// The same of several operands, parts of which lie within one another.
+const COMBINED: Rates = Rates { cell: 1000.0, ..KEPT };
 /// The surface is built anew, and what is flat is simplified.
 const REBUILT: Rates =
     Rates { base: 12.5e6, cell: 1080.0, triangle: 500.0, lid: 3180.0, bend: 2720.0, side: 270.0, voxel: 0.0 };
@@ -54,7 +56,7 @@ const OFFSET_AND_BACK: Rates =
     Rates { base: 75e6, cell: 0.0, triangle: 30.0, lid: 9000.0, bend: 5500.0, side: 0.0, voxel: 215.0 };
 /// One, where walls are thin.
 const THICKENED: Rates =
-    Rates { base: 13e6, cell: 1200.0, triangle: 0.0, lid: 5600.0, bend: 2760.0, side: 0.0, voxel: 0.0 };
+    Rates { base: 22e6, cell: 1100.0, triangle: 0.0, lid: 5000.0, bend: 2000.0, side: 0.0, voxel: 0.0 };
 
 /// The band of an offset is this much wider than its radius, h.
 const OFFSET_MARGIN: f64 = 4.0;
@@ -205,6 +207,7 @@ pub(super) fn crossings(operands: &[TriMesh], lattice: &Lattice) -> f64 {
 
 /// What the cost depends on, apart from the lattice.
 pub(super) struct Input {
+    operands: usize,
     triangles: usize,
     vertices: usize,
     /// Square model units.
@@ -216,6 +219,7 @@ pub(super) struct Input {
 impl Input {
     pub(super) fn of(operands: &[TriMesh]) -> Self {
         Self {
+            operands: operands.len(),
             triangles: operands.iter().map(|m| m.triangles.len()).sum(),
             vertices: operands.iter().map(|m| m.positions.len()).sum(),
             area: operands.iter().map(area).sum(),
@@ -277,6 +281,7 @@ impl Input {
         let cells = self.cells(lattice);
         let rates = match &options.fit {
             None => &UNFITTED,
+            Some(fit) if fit.keep && self.operands > 1 => &COMBINED,
             Some(fit) if fit.keep => &KEPT,
             Some(_) => &REBUILT,
         };
