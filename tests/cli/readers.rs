@@ -134,7 +134,7 @@ fn negative_parts_are_subtracted_where_there_is_something_to_subtract_from() {
         on(&folder, arguments, &path).exits(0).says(&["note: ", "1 negative part (`hole`) left out"]);
     }
     let table = on(&folder, "inspect IN", &path).text();
-    assert!(table.contains("hole: 12 triangles") && table.contains("volume") && table.contains("1000"), "{table}");
+    assert!(table.contains("hole: 12 triangles") && table.contains("1,000 mm³"), "{table}");
 }
 
 /// A lattice of zeros, packed.
