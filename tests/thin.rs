@@ -145,3 +145,31 @@ fn a_thickness_that_the_lattice_cannot_hold_is_refused_with_the_voxel_that_can()
         }
     }
 }
+
+#[test]
+fn walls_far_below_the_wanted_thickness_are_seen_and_grow_to_it() {
+    let plate = cuboid(DVec3::ZERO, DVec3::new(10.0, 10.0, 0.4));
+    for least in [0.7, 2.0, 6.0, 7.0, 8.0, 12.0] {
+        let options = ThickenOptions { least, side: SheetSide::Both, solid: Options::new(VoxelSize::Along(64)) };
+        let outcome = thicken(&plate, &options, &Progress::none()).expect("a solid");
+        let report = outcome.report.thicken.expect("it was done");
+        assert!(report.thin_area > 180.0, "{least}: {report:?}");
+        let bounds = outcome.mesh.bounds().expect("triangles");
+        assert!((bounds.size().z - least).abs() < 0.1 * outcome.lattice.h, "{least}: {bounds:?}");
+    }
+    // The wall of a round body is thin all around.
+    let torus = common::shapes::torus_of(64, 32, 10.0, 0.3);
+    let options = ThickenOptions { least: 8.0, side: SheetSide::Both, solid: Options::new(VoxelSize::Along(64)) };
+    let report = thicken(&torus, &options, &Progress::none()).expect("a solid").report.thicken.expect("it was done");
+    let area = 4.0 * std::f64::consts::PI.powi(2) * 10.0 * 0.3;
+    assert!(report.thin_area > 0.95 * area && report.volume_after > 20.0 * report.volume_before, "{report:?}");
+}
+
+#[test]
+fn a_thickness_far_beyond_the_model_is_refused() {
+    let options = ThickenOptions { least: 1000.0, side: SheetSide::Both, solid: Options::new(VoxelSize::Along(64)) };
+    match thicken(&common::shapes::torus(64, 32), &options, &Progress::none()) {
+        Err(Error::VoxelSize { reason }) => assert!(reason.contains("as thick as the model is long"), "{reason}"),
+        other => panic!("{:?}", other.map(|outcome| outcome.mesh.triangles.len())),
+    }
+}

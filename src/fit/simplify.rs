@@ -171,18 +171,11 @@ fn class_borders(surface: &Surface, facets: &Facets<'_>) -> Vec<bool> {
 /// zone no triangles meet afterwards.
 fn collapsed(task: &Task<'_>, (frozen, zone): (&[bool], &Zone), progress: &Progress) -> Result<Simple, Stopped> {
     let &Task { surface, off, .. } = task;
-    let Some(mut work) = Work::new(task) else {
-        return Ok(Simple { surface: surface.clone(), off: off.to_vec() });
-    };
+    let Some(mut work) = Work::new(task) else { return Ok(Simple { surface: surface.clone(), off: off.to_vec() }) };
     let mut frozen = frozen.to_vec();
     let mut active: Vec<u32> = (0..work.at.len() as u32).filter(|&v| !frozen[v as usize]).collect();
     let mut locked = vec![0u32; work.at.len()];
-    let corners = |t: &[u32; 3]| t.map(|v| surface.at(v));
-    let watched = |t: &[u32; 3]| zone.touches(corners(t));
-    let mut in_zone: Vec<bool> = match zone.is_nothing() {
-        true => Vec::new(),
-        false => surface.mesh.triangles.par_iter().map(watched).collect(),
-    };
+    let mut watch = Watch::new(surface, zone);
     for pass in 1..=MOST_PASSES as u32 {
         progress.check()?;
         let mut wishes: Vec<Wish> = active.par_iter().with_min_len(64).filter_map(|&v| work.wish(v)).collect();
@@ -197,25 +190,16 @@ fn collapsed(task: &Task<'_>, (frozen, zone): (&[bool], &Zone), progress: &Progr
                 continue;
             }
             let ring: Vec<u32> = work.edges.ring(vertex).map(|e| work.edges.target(e)).collect();
-            let star: Vec<u32> =
-                if in_zone.is_empty() { Vec::new() } else { work.edges.ring(vertex).map(|e| e / 3).collect() };
-            let before = (!star.is_empty()).then(|| work.done(wish, &star));
+            let before = watch.is_on().then(|| work.done(wish));
             if work.collapse(wish) {
                 collapses += 1;
                 ring.iter().for_each(|&v| locked[v as usize] = pass);
                 next.extend(ring);
-                let Some(before) = before else { continue };
-                let changed = before.record.changed();
-                changed.iter().for_each(|&t| in_zone[t as usize] |= watched(&work.edges.triangle(t)));
-                if changed.iter().any(|&t| in_zone[t as usize]) {
-                    done.push(before);
-                }
+                done.extend(before.filter(|before| watch.sees(surface, &work.edges, before.record.changed())));
             }
         }
         if !done.is_empty() {
-            for vertex in work.take_back(done, &in_zone, progress)? {
-                frozen[vertex as usize] = true;
-            }
+            work.take_back(done, &watch, progress)?.into_iter().for_each(|v| frozen[v as usize] = true);
         }
         if collapses == 0 {
             break;
@@ -225,6 +209,33 @@ fn collapsed(task: &Task<'_>, (frozen, zone): (&[bool], &Zone), progress: &Progr
         active = next.into_iter().filter(|&v| !frozen[v as usize] && work.edges.is_live_vertex(v)).collect();
     }
     Ok(work.finish())
+}
+
+/// Which triangles reach into a zone.
+struct Watch<'a> {
+    zone: &'a Zone,
+    /// For each triangle, or nothing where the zone is.
+    is: Vec<bool>,
+}
+
+impl<'a> Watch<'a> {
+    fn new(surface: &Surface, zone: &'a Zone) -> Self {
+        let touches = |t: usize| zone.touches(surface.mesh.corners(t));
+        let count = if zone.is_nothing() { 0 } else { surface.mesh.triangles.len() };
+        Self { zone, is: (0..count).into_par_iter().map(touches).collect() }
+    }
+
+    fn is_on(&self) -> bool {
+        !self.is.is_empty()
+    }
+
+    /// Whether one of these triangles, which have just changed, reaches into the zone.
+    fn sees(&mut self, surface: &Surface, edges: &HalfEdges, changed: &[u32]) -> bool {
+        for &t in changed {
+            self.is[t as usize] |= self.zone.touches(edges.triangle(t).map(|v| surface.at(v)));
+        }
+        changed.iter().any(|&t| self.is[t as usize])
+    }
 }
 
 /// For each vertex the distances from the planes of its triangles.
@@ -292,23 +303,23 @@ impl<'a> Work<'a> {
     }
 
     /// What is needed to take a collapse back that is about to be done.
-    fn done(&self, wish: &Wish, star: &[u32]) -> Done {
+    fn done(&self, wish: &Wish) -> Done {
         Done {
             vertex: wish.vertex,
             to: self.edges.target(wish.half_edge),
             record: self.edges.record(wish.half_edge),
-            off: star.iter().map(|&t| (t, self.off[t as usize])).collect(),
+            off: self.edges.ring(wish.vertex).map(|e| (e / 3, self.off[e as usize / 3])).collect(),
         }
     }
 
     /// Takes collapses of one pass back that made triangles meet; none met before. Returns the vertices that are there again.
-    fn take_back(&mut self, mut done: Vec<Done>, in_zone: &[bool], progress: &Progress) -> Result<Vec<u32>, Stopped> {
+    fn take_back(&mut self, mut done: Vec<Done>, watch: &Watch<'_>, progress: &Progress) -> Result<Vec<u32>, Stopped> {
         let mut back = Vec::new();
         loop {
-            let live = |t: &u32| in_zone[*t as usize] && self.edges.is_live_triangle(*t);
-            let near: Vec<u32> = (0..in_zone.len() as u32).into_par_iter().filter(live).collect();
+            let live = |t: &u32| watch.is[*t as usize] && self.edges.is_live_triangle(*t);
+            let near: Vec<u32> = (0..watch.is.len() as u32).into_par_iter().filter(live).collect();
             let part = part(&self.surface.mesh.positions, near.iter().map(|&t| self.edges.triangle(t)));
-            let mut bad = vec![false; in_zone.len()];
+            let mut bad = vec![false; watch.is.len()];
             intersecting_triangles(&part, progress)?.iter().for_each(|&t| bad[near[t as usize] as usize] = true);
             let harmful = |one: &Done| one.record.changed().iter().any(|&t| bad[t as usize]);
             let (gone, stay): (Vec<Done>, Vec<Done>) = done.into_iter().partition(harmful);

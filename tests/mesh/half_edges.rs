@@ -145,3 +145,37 @@ fn what_is_no_closed_oriented_manifold_is_refused_with_the_place() {
     let shared = bow.positions.iter().position(|&p| p == DVec3::ONE).unwrap() as u32;
     assert_eq!(HalfEdges::new(&bow.triangles, 15).unwrap_err().edge[0], shared);
 }
+
+#[test]
+fn collapses_that_do_not_touch_are_taken_back_in_any_order() {
+    for (name, shape) in [("cube", unit_cube()), ("small torus", torus(5, 4)), ("torus", torus(24, 16))] {
+        let before = topology(&shape);
+        let mut mesh = before.clone();
+        let mut locked = vec![false; shape.positions.len()];
+        let mut records = Vec::new();
+        for v in 0..locked.len() as u32 {
+            let ring: Vec<u32> = if mesh.is_live_vertex(v) { mesh.ring(v).collect() } else { Vec::new() };
+            let Some(&h) = ring.iter().find(|&&h| !locked[v as usize] && mesh.can_collapse(h)) else { continue };
+            ring.iter().for_each(|&h| locked[mesh.target(h) as usize] = true);
+            records.push(mesh.record(h));
+            mesh.collapse_unchecked(h);
+        }
+        let collapsed = mesh.clone();
+        // The even ones first, then the odd ones.
+        let (even, odd): (Vec<_>, Vec<_>) = (0..records.len()).partition(|k| k % 2 == 0);
+        even.iter().for_each(|&k| mesh.undo(&records[k]));
+        for v in (0..mesh.vertex_ids() as u32).filter(|&v| mesh.is_live_vertex(v)) {
+            assert_eq!(mesh.ring(v).count(), mesh.valence(v), "{name}");
+        }
+        odd.iter().for_each(|&k| mesh.undo(&records[k]));
+        assert_eq!(mesh.to_triangles(), before.to_triangles(), "{name}");
+        assert_eq!(mesh.live_triangles(), before.live_triangles(), "{name}");
+        for h in 0..3 * mesh.triangle_ids() as u32 {
+            assert_eq!(mesh.twin(h), before.twin(h), "{name}");
+        }
+        for v in 0..mesh.vertex_ids() as u32 {
+            assert_eq!((mesh.valence(v), mesh.ring(v).count()), (before.valence(v), before.valence(v)), "{name}");
+        }
+        assert!(records.is_empty() || collapsed.live_triangles() < before.live_triangles(), "{name}");
+    }
+}
