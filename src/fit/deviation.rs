@@ -43,12 +43,13 @@ pub(super) fn deviation(
     (nothing, most): (f64, f64),
     result: impl FnMut(f64),
 ) -> Option<()> {
-    match edges.valence(edges.origin(half_edge)) {
-        3..=USUAL => Star::<USUAL>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result),
-        3..=MOST_EDGES => {
-            Star::<MOST_EDGES>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result)
-        }
-        _ => None,
+    let count = edges.valence(edges.origin(half_edge));
+    if (3..=USUAL).contains(&count) {
+        Star::<USUAL>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result)
+    } else if (3..=MOST_EDGES).contains(&count) {
+        Star::<MOST_EDGES>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result)
+    } else {
+        None
     }
 }
 
@@ -111,12 +112,10 @@ impl<const N: usize> Star<N> {
     fn at_vertex(&self, old: &[f64; N], own: &mut [f64; N], before: &mut [f64; N]) {
         let all = old[..self.count].iter().copied().fold(0.0, f64::max);
         let triangle = |k: usize| [self.ring[0], self.ring[k], self.ring[k + 1]];
-        let mut apart = [0.0; N];
-        let mut least = f64::INFINITY;
-        for k in 1..self.count - 1 {
-            apart[k] = triangle(k).nearest(self.vertex).0.distance_squared(self.vertex);
-            least = least.min(apart[k]);
-        }
+        let off = |k: usize| triangle(k).nearest(self.vertex).0.distance_squared(self.vertex);
+        let apart: [f64; N] =
+            std::array::from_fn(|k| if (1..self.count - 1).contains(&k) { off(k) } else { f64::INFINITY });
+        let least = apart.iter().copied().fold(f64::INFINITY, f64::min);
         for k in (1..self.count - 1).filter(|&k| apart[k] <= least) {
             own[k] = own[k].max(least.sqrt());
             before[k] = all;

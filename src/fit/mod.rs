@@ -28,7 +28,7 @@ mod surface;
 mod zone;
 
 pub use facets::{Facets, Side, Sides, Wanted};
-pub use source::simplified_source;
+pub use source::{SimpleSource, simplified_source};
 pub use surface::{NOT_KEPT, Surface};
 
 use crate::ldi::Evidence;

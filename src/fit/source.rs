@@ -7,8 +7,16 @@ use super::surface::{NOT_KEPT, Surface};
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
 
-/// A valid solid with its flat parts simplified within [`FitOptions::kept_tolerance`], and for each triangle the one of `mesh` that it
-/// lies on. `classes` has a number for each triangle, or nothing: what has different ones is kept apart. `h` is the voxel
+/// What [`simplified_source`] makes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimpleSource {
+    /// The simplified solid.
+    pub mesh: TriMesh,
+    /// For each of its triangles the one of the source that it lies on.
+    pub of: Vec<Option<u32>>,
+}
+
+/// A valid solid with its flat parts simplified within [`FitOptions::kept_tolerance`]. `classes` has a number for each triangle, or nothing: what has different ones is kept apart. `h` is the voxel
 /// spacing that the tolerance refers to, model units. `None` where the mesh is no valid solid, as it is or with coordinates in `f32`.
 ///
 /// # Errors
@@ -19,7 +27,7 @@ pub fn simplified_source(
     h: f64,
     options: &FitOptions,
     progress: &Progress,
-) -> Result<Option<(TriMesh, Vec<Option<u32>>)>, Stopped> {
+) -> Result<Option<SimpleSource>, Stopped> {
     let facets = Facets::new(mesh, []).with_classes(classes);
     let mut sides = vec![Sides::default(); mesh.positions.len()];
     for (t, corners) in (0..).zip(&mesh.triangles) {
@@ -36,5 +44,5 @@ pub fn simplified_source(
     let simple = simplified((&surface, &untouched), &facets, h, &options, progress)?;
     let Some(simple) = simple.map(|simple| simple.surface) else { return Ok(None) };
     let of = (0..simple.mesh.triangles.len() as u32).map(|t| simple.facet(&facets, t)).collect();
-    Ok(Some((simple.mesh, of)))
+    Ok(Some(SimpleSource { mesh: simple.mesh, of }))
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::prepare::Soup;
 use super::{Options, Precision, TriangleSource};
-use crate::fit::simplified_source;
+use crate::fit::{SimpleSource, simplified_source};
 use crate::ldi::{Expression, Operands};
 use crate::mesh::TriMesh;
 use crate::mesh::edges::Union;
@@ -281,7 +281,7 @@ impl Standing {
         let classes = if classes.is_empty() { classes } else { kept.iter().map(|k| classes[k.0 as usize]).collect() };
         match simplified_source(&self.mesh, classes, h, fit, progress)? {
             None => Ok(self),
-            Some((mesh, of)) => {
+            Some(SimpleSource { mesh, of }) => {
                 let source = |t: Option<u32>| t.map_or(TriangleSource::Closed, |t| self.sources[t as usize]);
                 Ok(Self { mesh, sources: of.into_iter().map(source).collect() })
             }

@@ -193,7 +193,7 @@ fn lost_and_parted(
         let group = groups.of[n] as usize;
         if !groups.single[group] {
             // Whatever touches is one body or more, counted by its first shell.
-            all_known &= !groups.torn[group] && !(groups.mixed[group] || apart.operands() > 1);
+            all_known &= !(groups.torn[group] || groups.mixed[group] || apart.operands() > 1);
             bodies += usize::from(group == n);
             volume += if group == n { shell.volume.abs() } else { 0.0 };
             continue;
