@@ -44,8 +44,9 @@ pub(super) fn deviation(
     result: impl FnMut(f64),
 ) -> Option<()> {
     match edges.valence(edges.origin(half_edge)) {
-        3..=USUAL => Star::<USUAL>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result),
-        3..=MOST_EDGES => {
+        0..3 => None,
+        ..=USUAL => Star::<USUAL>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result),
+        ..=MOST_EDGES => {
             Star::<MOST_EDGES>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result)
         }
         _ => None,
@@ -111,12 +112,11 @@ impl<const N: usize> Star<N> {
     fn at_vertex(&self, old: &[f64; N], own: &mut [f64; N], before: &mut [f64; N]) {
         let all = old[..self.count].iter().copied().fold(0.0, f64::max);
         let triangle = |k: usize| [self.ring[0], self.ring[k], self.ring[k + 1]];
-        let mut apart = [0.0; N];
-        let mut least = f64::INFINITY;
-        for k in 1..self.count - 1 {
-            apart[k] = triangle(k).nearest(self.vertex).0.distance_squared(self.vertex);
-            least = least.min(apart[k]);
+        let mut apart = [f64::INFINITY; N];
+        for (k, apart) in apart.iter_mut().enumerate().take(self.count - 1).skip(1) {
+            *apart = triangle(k).nearest(self.vertex).0.distance_squared(self.vertex);
         }
+        let least = apart.iter().copied().fold(f64::INFINITY, f64::min);
         for k in (1..self.count - 1).filter(|&k| apart[k] <= least) {
             own[k] = own[k].max(least.sqrt());
             before[k] = all;
