@@ -43,11 +43,14 @@ pub(super) fn deviation(
     (nothing, most): (f64, f64),
     result: impl FnMut(f64),
 ) -> Option<()> {
+    let given = (edges, off);
     match edges.valence(edges.origin(half_edge)) {
-        0..3 => None,
-        ..=USUAL => Star::<USUAL>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result),
-        ..=MOST_EDGES => {
-            Star::<MOST_EDGES>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result)
+        ..3 => None,
+        few if few <= USUAL => {
+            Star::<USUAL>::new(edges, at, half_edge)?.offs(given, half_edge, (nothing, most), result)
+        }
+        many if many <= MOST_EDGES => {
+            Star::<MOST_EDGES>::new(edges, at, half_edge)?.offs(given, half_edge, (nothing, most), result)
         }
         _ => None,
     }
