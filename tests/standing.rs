@@ -105,7 +105,8 @@ fn chain(links: usize, gap: f64) -> TriMesh {
     let step = 2.0 * radius - 2.0 * tube - gap;
     let link = |n: usize| {
         let ring = torus_of(24, 10, radius, tube);
-        let turn = if n.is_multiple_of(2) { DMat3::IDENTITY } else { DMat3::from_rotation_x(std::f64::consts::FRAC_PI_2) };
+        let turn =
+            if n.is_multiple_of(2) { DMat3::IDENTITY } else { DMat3::from_rotation_x(std::f64::consts::FRAC_PI_2) };
         let positions = ring.positions.iter().map(|&p| turn * p + DVec3::X * (step * n as f64)).collect();
         TriMesh { positions, ..ring }
     };

@@ -43,13 +43,16 @@ pub(super) fn deviation(
     (nothing, most): (f64, f64),
     result: impl FnMut(f64),
 ) -> Option<()> {
-    let count = edges.valence(edges.origin(half_edge));
-    if (3..=USUAL).contains(&count) {
-        Star::<USUAL>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result)
-    } else if (3..=MOST_EDGES).contains(&count) {
-        Star::<MOST_EDGES>::new(edges, at, half_edge)?.offs((edges, off), half_edge, (nothing, most), result)
-    } else {
-        None
+    let given = (edges, off);
+    match edges.valence(edges.origin(half_edge)) {
+        ..3 => None,
+        few if few <= USUAL => {
+            Star::<USUAL>::new(edges, at, half_edge)?.offs(given, half_edge, (nothing, most), result)
+        }
+        many if many <= MOST_EDGES => {
+            Star::<MOST_EDGES>::new(edges, at, half_edge)?.offs(given, half_edge, (nothing, most), result)
+        }
+        _ => None,
     }
 }
 
@@ -112,9 +115,10 @@ impl<const N: usize> Star<N> {
     fn at_vertex(&self, old: &[f64; N], own: &mut [f64; N], before: &mut [f64; N]) {
         let all = old[..self.count].iter().copied().fold(0.0, f64::max);
         let triangle = |k: usize| [self.ring[0], self.ring[k], self.ring[k + 1]];
-        let off = |k: usize| triangle(k).nearest(self.vertex).0.distance_squared(self.vertex);
-        let apart: [f64; N] =
-            std::array::from_fn(|k| if (1..self.count - 1).contains(&k) { off(k) } else { f64::INFINITY });
+        let mut apart = [f64::INFINITY; N];
+        for (k, apart) in apart.iter_mut().enumerate().take(self.count - 1).skip(1) {
+            *apart = triangle(k).nearest(self.vertex).0.distance_squared(self.vertex);
+        }
         let least = apart.iter().copied().fold(f64::INFINITY, f64::min);
         for k in (1..self.count - 1).filter(|&k| apart[k] <= least) {
             own[k] = own[k].max(least.sqrt());
@@ -147,4 +151,91 @@ fn crossing(to: DVec2, a: DVec2, b: DVec2) -> Option<(f64, f64)> {
     let (s, t) = (a.perp_dot(way) / turn, a.perp_dot(to) / turn);
     let within = |share: f64| share > BESIDE && share < 1.0 - BESIDE;
     (within(s) && within(t)).then_some((s, t))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::simplify::simplified;
+    use super::super::{Facets, FitOptions, Side, Sides, Surface};
+    use super::*;
+    use crate::mesh::{Plane, TriMesh};
+    use crate::progress::Progress;
+
+    /// A block of squares, each in two, with a step in it: its top is lower where x is above 6.
+    fn stepped(n: i32) -> TriMesh {
+        let solid = |c: [i32; 3]| c.iter().all(|&k| (0..n).contains(&k)) && (c[0] < 6 || c[2] < n / 2);
+        let mut mesh = TriMesh::default();
+        let mut ids = rustc_hash::FxHashMap::default();
+        for cell in (0..n * n * n).map(|k| [k % n, k / n % n, k / n / n]).filter(|&c| solid(c)) {
+            for (axis, up) in (0..3).flat_map(|axis| [(axis, 0), (axis, 1)]) {
+                let mut next = cell;
+                next[axis] += 2 * up - 1;
+                if solid(next) {
+                    continue;
+                }
+                let (u, v) = if up == 1 { ((axis + 1) % 3, (axis + 2) % 3) } else { ((axis + 2) % 3, (axis + 1) % 3) };
+                let quad = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[a, b]| {
+                    let mut p = cell;
+                    (p[axis], p[u], p[v]) = (p[axis] + up, p[u] + a, p[v] + b);
+                    *ids.entry(p).or_insert_with(|| {
+                        mesh.positions.push(DVec3::from_array(p.map(f64::from)));
+                        mesh.positions.len() as u32 - 1
+                    })
+                });
+                mesh.triangles.extend([[quad[0], quad[1], quad[2]], [quad[0], quad[2], quad[3]]]);
+            }
+        }
+        mesh
+    }
+
+    /// The largest distance from corners and middles of the triangles of one mesh to the other.
+    fn farthest(a: &TriMesh, b: &TriMesh) -> f64 {
+        let off = |p: DVec3| {
+            (0..b.triangles.len()).map(|t| b.corners(t).nearest(p).0.distance(p)).fold(f64::INFINITY, f64::min)
+        };
+        let points = (0..a.triangles.len()).flat_map(|t| {
+            let [p, q, r] = a.corners(t);
+            [p, (p + q + r) / 3.0, (p + q) / 2.0]
+        });
+        points.map(off).fold(0.0, f64::max)
+    }
+
+    /// The surface that a mesh is when it is its own source, and simplified.
+    fn simple(mesh: &TriMesh, tolerance: f64) -> TriMesh {
+        let facets = Facets::new(mesh, std::iter::empty::<Plane>());
+        let mut sides = vec![Sides::default(); mesh.positions.len()];
+        for (t, corners) in (0..).zip(&mesh.triangles) {
+            corners.iter().for_each(|&v| sides[v as usize].add(Side::new(t, false)));
+        }
+        let surface = Surface::new(mesh.clone(), sides);
+        let options = FitOptions { tolerance, ..FitOptions::default() };
+        let off = vec![0.0; mesh.triangles.len()];
+        simplified((&surface, &off), &facets, 1.0, &options, &Progress::none())
+            .expect("not stopped")
+            .expect("a solid")
+            .surface
+            .mesh
+    }
+
+    #[test]
+    fn what_is_simplified_stays_within_the_tolerance_both_ways_and_corners_stay() {
+        let block = stepped(12);
+        for tolerance in [0.002, 0.1, 0.4] {
+            let found = simple(&block, tolerance);
+            assert!(farthest(&block, &found) <= tolerance && farthest(&found, &block) <= tolerance, "{tolerance}");
+            assert!(found.triangles.len() <= 40, "{tolerance}: {}", found.triangles.len());
+        }
+        let mut wavy = stepped(12);
+        for p in &mut wavy.positions {
+            p.z += 0.3 * (0.7 * p.x).sin() * (0.5 * p.y).cos();
+        }
+        let mut last = wavy.triangles.len();
+        for tolerance in [0.02, 0.1, 0.4] {
+            let found = simple(&wavy, tolerance);
+            let off = farthest(&wavy, &found).max(farthest(&found, &wavy));
+            assert!(off <= tolerance, "{off} for {tolerance}");
+            assert!(found.triangles.len() <= last, "{} after {last} for {tolerance}", found.triangles.len());
+            last = found.triangles.len();
+        }
+    }
 }
