@@ -294,6 +294,7 @@ fn evaluate(
     let frame = Frame::of(operands);
     let operands = &*frame.local(operands);
     let h = prepare::spacing(&prepare::bounds(operands)?, options.voxel)?;
+    plan::check_standing(operands.iter().map(|operand| operand.triangles.len()).sum(), options)?;
     let mut stages = stages::Stages::new(progress);
     stages.begin("orient")?;
     let soup = prepare::prepare(operands, options.orient, progress)?;

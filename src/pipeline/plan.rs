@@ -161,6 +161,15 @@ impl Plan {
     }
 }
 
+/// An error when shells that stand as they are would need more memory than allowed.
+pub(super) fn check_standing(triangles: usize, options: &Options) -> Result<(), Error> {
+    let needed = Plan::of_standing(0.0, triangles).memory;
+    match options.max_memory {
+        Some(allowed) if needed > allowed => Err(Error::Memory { needed, allowed, voxel_that_fits: None }),
+        _ => Ok(()),
+    }
+}
+
 /// An error when the run would need more memory than allowed, or more than 32 bits to number things.
 pub(super) fn check_limits(
     operands: &[TriMesh],
@@ -344,11 +353,13 @@ mod tests {
     use crate::morphology::Operation;
     use glam::DVec3;
 
-    /// `copies` of one triangle of area ½.
-    fn stack(copies: usize) -> TriMesh {
+    /// Triangles of area ½, one closely over the other.
+    fn stack(count: u32) -> TriMesh {
+        let layer =
+            |k: u32| [DVec3::ZERO, DVec3::X, DVec3::new(0.0, 1.0, 0.2)].map(|p| p + DVec3::Z * f64::from(k) * 1e-9);
         TriMesh {
-            positions: vec![DVec3::ZERO, DVec3::X, DVec3::new(0.0, 1.0, 0.2)],
-            triangles: vec![[0, 1, 2]; copies],
+            positions: (0..count).flat_map(layer).collect(),
+            triangles: (0..count).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect(),
         }
     }
 

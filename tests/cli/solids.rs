@@ -99,11 +99,11 @@ fn nothing_left_is_exit_4_and_no_file() {
 #[test]
 fn walls_far_below_the_voxel_are_told() {
     let folder = folder();
-    let run = run_in(&folder, "repair testdata/thin_plate.stl -o OUT/out.stl --resolution 64");
+    let run = run_in(&folder, "repair testdata/thin_plate.stl -o OUT/out.stl --resolution 64 --rebuild");
     assert!(matches!(run.status, 3 | 4), "{}: {}", run.status, run.stderr);
     assert!(run.stderr.contains("voxel"), "{}", run.stderr);
     assert_eq!(folder.path().join("out.stl").exists(), run.status == 3, "{}", run.stderr);
-    run_in(&folder, "repair testdata/thin_plate.stl -o OUT/fine.stl --voxel 0.018").exits(0);
+    run_in(&folder, "repair testdata/thin_plate.stl -o OUT/fine.stl --voxel 0.018 --rebuild").exits(0);
     assert_volume(&solid(&folder, "fine.stl"), 1.6, 0.02);
 }
 

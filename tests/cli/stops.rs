@@ -36,7 +36,7 @@ fn a_memory_cap_refuses_before_the_work() {
     run_in(&folder, "repair testdata/torus.ply -o OUT/a.stl --max-memory 1M")
         .exits(5)
         .says(&["error: ", "--max-memory"]);
-    run_in(&folder, "repair testdata/torus.ply -o OUT/a.stl --max-memory 50M --unit cm")
+    run_in(&folder, "repair testdata/torus.ply -o OUT/a.stl --max-memory 50M --unit cm --rebuild")
         .exits(5)
         .says(&["hint: --voxel 0."]);
     run_in(&folder, "repair testdata/torus.ply --plan --max-memory 1M").exits(5);

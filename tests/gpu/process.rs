@@ -84,8 +84,15 @@ fn without_an_adapter_the_program_says_what_to_install() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out.stl");
     let input = data_folder().join("clean/fandisk.off");
-    let arguments =
-        ["repair", input.to_str().expect("plain"), "-o", out.to_str().expect("plain"), "--resolution", "16"];
+    let arguments = [
+        "repair",
+        input.to_str().expect("plain"),
+        "-o",
+        out.to_str().expect("plain"),
+        "--resolution",
+        "16",
+        "--rebuild",
+    ];
     let forced = without_drivers(&[&arguments[..], &["--backend", "gpu"]].concat());
     let words = String::from_utf8_lossy(&forced.stderr).into_owned();
     assert_eq!(forced.status.code(), Some(1), "{words}");
