@@ -23,6 +23,8 @@ mod memory;
 mod mutants;
 #[path = "io/real.rs"]
 mod real;
+#[path = "io/roles.rs"]
+mod roles;
 #[path = "io/round_trip.rs"]
 mod round_trip;
 #[path = "io/saving.rs"]
