@@ -23,6 +23,17 @@ impl FitOptions {
     }
 }
 
+/// How much is taken back at a bad triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Haste {
+    /// The last step first, then the one before.
+    StepByStep,
+    /// All that was done there.
+    AtOnce,
+    /// The same within so many rings of triangles around it: what is mended at one end of a row of slivers is wrong at the next.
+    Around(u32),
+}
+
 /// The state of a fit.
 pub(super) struct Fitting<'a> {
     home: &'a Surface,
@@ -104,7 +115,8 @@ impl<'a> Fitting<'a> {
     /// Takes back, step by step, what was done at the home triangles `bad`: first vertices
     /// inside, then cuts, then moves, then all of this around them. For those that are `touching` another sheet the first step
     /// is to stay a little within the solid.
-    pub(super) fn undo(&mut self, bad: &[u32], touching: &[u32], centred: &[u32], at_once: bool) {
+    pub(super) fn undo(&mut self, bad: &[u32], touching: &[u32], centred: &[u32], haste: Haste) {
+        let at_once = haste != Haste::StepByStep;
         let is_centred: FxHashSet<u32> = centred.iter().copied().collect();
         let is_cut: FxHashSet<[u32; 2]> = self.points.iter().map(|p| p.0).collect();
         let mut dirty: FxHashSet<u32> = bad.iter().copied().collect();
@@ -116,6 +128,10 @@ impl<'a> Fitting<'a> {
                 continue;
             }
             self.given_up += 1;
+            if let Haste::Around(rings) = haste {
+                back.extend(self.spare_around(t, rings));
+                continue;
+            }
             if is_centred.contains(&t) && self.spared.triangles.insert(t) && !at_once {
                 continue;
             }
@@ -135,19 +151,8 @@ impl<'a> Fitting<'a> {
                 // What is wrong here comes from beside it: wider each time.
                 let rings = self.times_bad.entry(t).or_insert(0);
                 *rings += 1;
-                let mut near: Vec<u32> = vec![t];
-                for _ in 0..*rings {
-                    let corners = near.iter().flat_map(|&t| self.home.mesh.triangles[t as usize]);
-                    near = corners.flat_map(|v| self.around.of(v)).copied().collect();
-                    near.sort_unstable();
-                    near.dedup();
-                }
-                for t in near {
-                    let ids = self.home.mesh.triangles[t as usize];
-                    self.spared.triangles.insert(t);
-                    self.spared.edges.extend(edges_of(&ids));
-                    back.extend(ids);
-                }
+                let rings = *rings;
+                back.extend(self.spare_around(t, rings));
             }
         }
         for &v in &back {
@@ -164,6 +169,25 @@ impl<'a> Fitting<'a> {
         // What is cut in a triangle also depends on the triangles beside it.
         let corners = dirty.iter().flat_map(|&t| self.home.mesh.triangles[t as usize]);
         self.dirty = Some(corners.flat_map(|v| self.around.of(v)).copied().collect());
+    }
+
+    /// Spares all home triangles within so many rings around one of them; returns their vertices.
+    fn spare_around(&mut self, t: u32, rings: u32) -> Vec<u32> {
+        let mut near: Vec<u32> = vec![t];
+        for _ in 0..rings {
+            let corners = near.iter().flat_map(|&t| self.home.mesh.triangles[t as usize]);
+            near = corners.flat_map(|v| self.around.of(v)).copied().collect();
+            near.sort_unstable();
+            near.dedup();
+        }
+        let mut vertices = Vec::new();
+        for t in near {
+            let ids = self.home.mesh.triangles[t as usize];
+            self.spared.triangles.insert(t);
+            self.spared.edges.extend(edges_of(&ids));
+            vertices.extend(ids);
+        }
+        vertices
     }
 
     /// Lets what was moved and will be cut at a home triangle stay a little within the solid; returns the triangles around.

@@ -3,16 +3,28 @@
 use rustc_hash::FxHashSet;
 
 use super::cut::Cut;
-use super::fitting::Fitting;
+use super::fitting::{Fitting, Haste};
 use super::surface::{Surface, shape};
 use super::{Facets, FitOptions, FitReport, cut, mend, safeguard};
 use crate::progress::{Progress, Stopped};
 
-/// Rounds of undoing after which the surface stays as it was. Real meshes take up to 10.
-const MOST_ROUNDS: usize = 24;
+/// Rounds of undoing after which the surface stays as it was. Real meshes take up to 10, cycloidal more than 24.
+const MOST_ROUNDS: usize = 64;
 
-/// Rounds after which all that was done at a bad place is taken back at once.
+/// Rounds after which all that was done at a bad place is taken back at once, and after which what is around it is taken back, too: in a
+/// row of slivers the next one is wrong each time, and walking along it must not cost all the others their creases.
 const PATIENT_ROUNDS: usize = 6;
+const NARROW_ROUNDS: usize = 12;
+const RINGS: u32 = 3;
+
+/// How much is taken back in a round.
+fn haste(round: usize) -> Haste {
+    match round {
+        0..PATIENT_ROUNDS => Haste::StepByStep,
+        PATIENT_ROUNDS..NARROW_ROUNDS => Haste::AtOnce,
+        _ => Haste::Around(RINGS),
+    }
+}
 
 /// A surface with its creases.
 pub(super) struct Sharp {
@@ -63,7 +75,7 @@ pub(super) fn sharpen(
         let touching = merged(touching.into_iter().map(origin), &[]);
         fine.extend(mended.iter().filter(|t| bad.binary_search(t).is_err()).map(|&t| corners(&cut, t)));
         let bad = merged(bad.into_iter().map(|t| cut.origin[t as usize]), &[]);
-        fitting.undo(&bad, &touching, &cut.centred, round >= PATIENT_ROUNDS);
+        fitting.undo(&bad, &touching, &cut.centred, haste(round));
     }
     let report = FitReport { given_up: home.mesh.triangles.len(), ..FitReport::default() };
     Ok(Sharp { surface: home.clone(), origin: (0..home.mesh.triangles.len() as u32).collect(), report })

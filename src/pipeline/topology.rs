@@ -53,7 +53,7 @@ pub struct TopologyReport {
     pub parted: usize,
     /// Of these, pieces smaller than [`CRUMB`] of their body.
     pub crumbs: usize,
-    /// Tunnels beyond those of the operands, and beyond what crossings can make; `None` where the operands are too torn to tell.
+    /// Tunnels beyond those of the operands, and beyond what crossings and rims that are joined can make; `None` where the operands are too torn to tell.
     pub new_tunnels: Option<i64>,
 }
 
@@ -230,8 +230,11 @@ fn lost_and_parted(
 
 fn tunnels(report: &mut TopologyReport, apart: &Apart, groups: &Groups, surfaces: &[Vec<u32>]) {
     let mut sum = 0;
+    // Rims that face each other may be joined instead of closed one by one.
+    let mut joined = 0;
     for (n, shell) in apart.shells.list.iter().enumerate() {
         let group = groups.of[n] as usize;
+        joined += shell.rims.saturating_sub(1) as i64;
         match shell.genus.filter(|_| !groups.torn[group]) {
             Some(genus) if !surfaces[group].is_empty() => sum += genus,
             Some(_) => {}
@@ -241,5 +244,5 @@ fn tunnels(report: &mut TopologyReport, apart: &Apart, groups: &Groups, surfaces
     if let Some(before) = &mut report.before {
         before.tunnels = sum;
     }
-    report.new_tunnels = Some((report.after.tunnels - sum - apart.crossings() as i64).max(0));
+    report.new_tunnels = Some((report.after.tunnels - sum - joined - apart.crossings() as i64).max(0));
 }
