@@ -34,7 +34,7 @@ pub struct OrientReport {
     pub patches: usize,
     /// Triangles turned over to agree with the rest of their patch.
     pub flipped_in_patches: usize,
-    /// Patches turned over as a whole by the vote of the rays.
+    /// Patches turned over as a whole, by the vote of the rays or, where they are shells that stand as they are, by winding numbers.
     pub flipped_patches: usize,
     /// Triangles in these patches.
     pub flipped_by_rays: usize,
