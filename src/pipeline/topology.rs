@@ -41,7 +41,7 @@ pub struct TopologyReport {
     pub before: Option<Topology>,
     /// What the result has.
     pub after: Topology,
-    /// Bodies and voids that are gone, the largest first, [`MOST_LISTED`] at most.
+    /// Bodies and voids that are gone, the largest first, 20 at most.
     pub lost: Vec<LostBody>,
     /// How many are gone.
     pub lost_count: usize,
@@ -51,17 +51,17 @@ pub struct TopologyReport {
     pub fused: usize,
     /// Pieces into which single bodies came apart, beyond the first of each.
     pub parted: usize,
-    /// Of these, pieces smaller than [`CRUMB`] of their body.
+    /// Of these, pieces smaller than a ten-thousandth of their body.
     pub crumbs: usize,
     /// Tunnels beyond those of the operands, and beyond what crossings and rims that are joined can make; `None` where the operands are too torn to tell.
     pub new_tunnels: Option<i64>,
 }
 
 /// At most this many lost bodies are listed.
-pub const MOST_LISTED: usize = 20;
+const MOST_LISTED: usize = 20;
 
 /// A piece with less than this part of its body's volume is a crumb.
-pub const CRUMB: f64 = 1e-4;
+const CRUMB: f64 = 1e-4;
 
 /// More than this part of the bodies lost, fused or come apart, or of the volume lost, or as many tunnels more, is a broken promise.
 const LARGE: f64 = 0.1;
