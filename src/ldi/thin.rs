@@ -45,14 +45,19 @@ pub fn lengths(spans: &[Spans]) -> Lengths {
 /// does for any wall, and the rounding of a silhouette, which makes short spans on any shape, does not.
 const ALONG: f64 = 0.85;
 
-/// Calls `visit` with each wall and gap that a ray of any direction crosses steeply: whether it is a gap, the ray, its two ends, and the
+/// Calls `visit` with each wall and gap that is asked for and that a ray of any direction crosses steeply: whether it is a gap, the ray, its two ends, and the
 /// width in voxels, the length of the piece times the cosine of the angle with the nearer normal. `planes` are those of
 /// the triangles, lattice coordinates.
-fn each_width(spans: &Spans, planes: &[Plane], mut visit: impl FnMut(bool, usize, &[Hit], f64)) {
+fn each_width(
+    spans: &Spans,
+    planes: &[Plane],
+    asked: impl Fn(&[Hit]) -> bool,
+    mut visit: impl FnMut(bool, usize, &[Hit], f64),
+) {
     let way = spans.layers.direction.vector().as_dvec3();
     let (length, unit) = (way.length(), way.normalize());
     for ray in (0..spans.layers.ray_count()).filter(|&ray| !spans.is_silent(ray)) {
-        for (n, ends) in spans.layers.of(ray).windows(2).enumerate() {
+        for (n, ends) in spans.layers.of(ray).windows(2).enumerate().filter(|(_, ends)| asked(ends)) {
             let cosine = ends.iter().map(|hit| planes[hit.triangle() as usize].normal.dot(unit).abs());
             let cosine = cosine.fold(1.0, f64::min);
             if cosine >= ALONG {
@@ -70,6 +75,7 @@ pub fn widths(spans: &[Spans], planes: &[Plane]) -> Lengths {
         each_width(
             spans,
             planes,
+            |_| true,
             |gap, _, _, width| if gap { widths.gaps.push(width) } else { widths.spans.push(width) },
         );
     }
@@ -106,8 +112,9 @@ impl ThinPlace {
 pub fn thin_places(spans: &[Spans], planes: &[Plane], sound: impl Fn(u32) -> bool) -> Vec<ThinPlace> {
     let mut cells: BTreeMap<(bool, [i32; 3]), ThinPlace> = BTreeMap::new();
     for spans in spans {
-        each_width(spans, planes, |gap, ray, ends, width| {
-            if width >= THIN || ends.iter().all(|hit| sound(hit.triangle())) {
+        let harmed = |ends: &[Hit]| !ends.iter().all(|hit| sound(hit.triangle()));
+        each_width(spans, planes, harmed, |gap, ray, ends, width| {
+            if width >= THIN {
                 return;
             }
             let (u, v) = spans.layers.position(ray);
