@@ -3,8 +3,6 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use glam::DVec3;
-
 use serde_json::json;
 
 use super::args::SolidArgs;
@@ -16,7 +14,7 @@ use super::output::{self, Target, write_verified};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
 use super::{backend, limits, machine, negative, summary, words};
-use crate::fit::FitOptions;
+use crate::fit::{FitOptions, rounded};
 use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
@@ -249,12 +247,11 @@ pub(super) fn write(
 
 /// The mesh with the numbers that a format holds, and how far the farthest vertex moves for it, model units.
 fn stored(mesh: &TriMesh, format: Format) -> (Cow<'_, TriMesh>, Option<f64>) {
-    let round = |p: DVec3| p.as_vec3().as_dvec3();
-    let moved = mesh.positions.iter().map(|&p| p.distance(round(p))).fold(0.0, f64::max);
+    let moved = mesh.positions.iter().map(|&p| p.distance(rounded(p))).fold(0.0, f64::max);
     if !format.is_single() || moved == 0.0 {
         return (Cow::Borrowed(mesh), None);
     }
-    let positions = mesh.positions.iter().map(|&p| round(p)).collect();
+    let positions = mesh.positions.iter().map(|&p| rounded(p)).collect();
     (Cow::Owned(TriMesh { positions, triangles: mesh.triangles.clone() }), Some(moved))
 }
 

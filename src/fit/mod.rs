@@ -29,6 +29,7 @@ mod zone;
 
 pub use facets::{Facets, Side, Sides, Wanted};
 pub use source::{SimpleSource, simplified_source};
+pub(crate) use surface::rounded;
 pub use surface::{NOT_KEPT, Surface};
 
 use crate::ldi::Evidence;

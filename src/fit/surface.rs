@@ -144,7 +144,7 @@ pub(super) fn faces_out(facets: &Facets<'_>, corners: &[Place; 3]) -> bool {
 }
 
 /// A point whose coordinates any format holds unchanged.
-pub(super) fn rounded(p: DVec3) -> DVec3 {
+pub(crate) fn rounded(p: DVec3) -> DVec3 {
     p.as_vec3().as_dvec3()
 }
 

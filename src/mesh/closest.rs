@@ -12,7 +12,13 @@ use super::{Bounds, TriMesh};
 
 /// By so much at least boxes are larger than what they hold, in the space where all of them together lie
 /// within −1 to 1: more than rounding to single precision moves a coordinate there.
-const MARGIN: f64 = 1.5e-7;
+pub(crate) const MARGIN: f64 = 1.5e-7;
+
+/// The margin of box number `k`. Shapes at the same place get different boxes: building a tree of equal ones takes time by the square of their
+/// number.
+pub(crate) fn margin(k: usize) -> f64 {
+    MARGIN * (1.0 + 15.0 * (k as f64 * 0.618_033_988_749_894_9).fract())
+}
 
 /// A box is passed over only when it is farther than the best find by more than rounding explains.
 const SLACK: f64 = 1.0 - 1e-12;
@@ -68,9 +74,7 @@ impl<S: Shape> ClosestTree<S> {
             .iter()
             .enumerate()
             .map(|(k, shape)| {
-                // Shapes at the same place get different boxes: building a tree of equal ones takes time
-                // by the square of their number.
-                let margin = MARGIN * (1.0 + 15.0 * (k as f64 * 0.618_033_988_749_894_9).fract());
+                let margin = margin(k);
                 let b = shape.bounds();
                 Aabb::new(single(b.min, -margin), single(b.max, margin))
             })

@@ -22,8 +22,8 @@ mod triangle_pair;
 mod validity;
 pub(crate) mod weld;
 
-pub(crate) use closest::tree_over;
 pub use closest::{Closest, ClosestTree};
+pub(crate) use closest::{MARGIN, margin, tree_over};
 pub use defects::{Defects, defects};
 pub use half_edges::{CollapseRecord, Compacted, HalfEdges, NotManifold, Ring};
 pub use nearest_point::{Feature, Shape};

@@ -8,12 +8,12 @@ use serde::Serialize;
 
 use super::prepare::Soup;
 use super::{Options, Precision, TriangleSource};
-use crate::fit::{SimpleSource, simplified_source};
+use crate::fit::{SimpleSource, rounded, simplified_source};
 use crate::ldi::{Expression, Operands};
 use crate::mesh::TriMesh;
 use crate::mesh::edges::Union;
 use crate::progress::{Progress, Stopped};
-use crate::shells::{Contacts, Fate, Shells, StandingOptions, contacts, shells, standing};
+use crate::shells::{Contacts, Fate, Shell, Shells, StandingOptions, contacts, shells, standing};
 
 /// Shells of the operands that stayed as they are, without any voxel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
@@ -32,10 +32,10 @@ pub struct StandingReport {
 pub(super) struct Apart {
     pub shells: Shells,
     pub contacts: Contacts,
-    /// What becomes of each shell in this run.
-    pub fates: Vec<Fate>,
     /// What exact arithmetic says of each shell.
     pub truth: Vec<Fate>,
+    /// Whether shells of which it says anything stand in this run; else all go through voxels.
+    stand: bool,
     /// For each operand and each of its triangles the shell; nothing for triangles that were dropped.
     shell_of: Vec<Vec<Option<u32>>>,
     /// Places, connected through vertices, where triangles touch others.
@@ -46,7 +46,7 @@ impl Precision {
     /// A coordinate as the result may have it.
     fn of(self, p: DVec3) -> DVec3 {
         match self {
-            Self::Single => p.as_vec3().as_dvec3(),
+            Self::Single => rounded(p),
             Self::Double => p,
         }
     }
@@ -85,10 +85,19 @@ impl Apart {
             true => standing(&mesh, &shells, &contacts, &asked, progress)?,
             false => vec![Fate::Open; shells.list.len()],
         };
-        let fates = if keeps { truth.clone() } else { vec![Fate::Open; shells.list.len()] };
         let shell_of = shell_of(soup, &shells);
         let crossings = places(&soup.mesh, &contacts.touched);
-        Ok(Self { shells, contacts, fates, truth, shell_of, crossings })
+        Ok(Self { shells, contacts, truth, stand: keeps, shell_of, crossings })
+    }
+
+    /// What becomes of a shell in this run.
+    fn fate(&self, shell: usize) -> Fate {
+        if self.stand { self.truth[shell] } else { Fate::Open }
+    }
+
+    /// All shells with what becomes of them.
+    fn fates(&self) -> impl Iterator<Item = (Fate, &Shell)> {
+        self.shells.list.iter().enumerate().map(|(n, shell)| (self.fate(n), shell))
     }
 
     /// The number of operands.
@@ -108,14 +117,14 @@ impl Apart {
 
     /// The same with no shell standing.
     pub(super) fn none_standing(mut self) -> Self {
-        self.fates.fill(Fate::Open);
+        self.stand = false;
         self
     }
 
     pub(super) fn report(&self) -> StandingReport {
         let mut report = StandingReport::default();
-        for (fate, shell) in self.fates.iter().zip(&self.shells.list) {
-            let (bounds, turned) = match *fate {
+        for (fate, shell) in self.fates() {
+            let (bounds, turned) = match fate {
                 Fate::Open => continue,
                 Fate::Bounds { turned, .. } => (true, turned),
                 Fate::Inside { turned } => (false, turned),
@@ -131,7 +140,7 @@ impl Apart {
     /// The soup without what stands or is left out, and the whole one, where that is another; what was turned over is counted in the reports of
     /// the first.
     pub(super) fn split(&self, soup: Soup) -> (Soup, Option<Soup>) {
-        if self.fates.iter().all(|fate| fate.is_open()) {
+        if self.fates().all(|(fate, _)| fate.is_open()) {
             return (soup, None);
         }
         (self.rest(&soup), Some(soup))
@@ -139,10 +148,10 @@ impl Apart {
 
     /// The soup without what stands or is left out.
     pub(super) fn rest(&self, soup: &Soup) -> Soup {
-        let is_open = |t: usize| self.fates[self.shells.of[t] as usize].is_open();
+        let is_open = |t: usize| self.fate(self.shells.of[t] as usize).is_open();
         let left: Vec<usize> = (0..soup.mesh.triangles.len()).filter(|&t| is_open(t)).collect();
         let mut reports = soup.reports.clone();
-        for (fate, shell) in self.fates.iter().zip(&self.shells.list) {
+        for (fate, shell) in self.fates() {
             if matches!(fate, Fate::Bounds { turned: true, .. } | Fate::Inside { turned: true }) {
                 reports[shell.operand].flipped_patches += 1;
                 reports[shell.operand].flipped_by_rays += shell.triangles.len();
@@ -171,7 +180,7 @@ impl Apart {
         progress: &Progress,
     ) -> Result<Standing, Stopped> {
         let kept: Vec<(u32, bool)> = (0..soup.mesh.triangles.len() as u32)
-            .filter_map(|t| match self.fates[self.shells.of[t as usize] as usize] {
+            .filter_map(|t| match self.fate(self.shells.of[t as usize] as usize) {
                 Fate::Bounds { turned, reversed } => Some((t, turned != reversed)),
                 _ => None,
             })

@@ -44,7 +44,7 @@ impl Job<'_> {
             if halvings > 0 && cells * finer * finer > MOST_CELLS {
                 break;
             }
-            let made = self.if_any(rest.clone(), self.h / finer, stages)?;
+            let made = self.if_any(&rest, self.h / finer, stages)?;
             if made.mesh.triangles.is_empty() && standing.mesh.triangles.is_empty() {
                 let reason = "the result is empty: the operands have no such part in common".into();
                 return Err(Error::NothingEnclosed { reason });
@@ -57,17 +57,16 @@ impl Job<'_> {
     }
 
     /// What voxels of size `h` make of a soup, be it nothing.
-    fn if_any(&self, rest: Soup, h: f64, stages: &mut Stages<'_>) -> Result<Outcome, Error> {
-        let reports = rest.reports.clone();
+    fn if_any(&self, rest: &Soup, h: f64, stages: &mut Stages<'_>) -> Result<Outcome, Error> {
         let nothing = |warnings| {
             let lattice = Lattice { origin: DVec3::ZERO, h, dims: IVec3::ZERO };
-            let report = Report { voxel: h, orient: reports, warnings, ..Report::default() };
+            let report = Report { voxel: h, orient: rest.reports.clone(), warnings, ..Report::default() };
             Outcome { mesh: TriMesh::default(), sources: Vec::new(), lattice, report }
         };
         if rest.mesh.triangles.is_empty() {
             return Ok(nothing(Vec::new()));
         }
-        match self.alone(rest, h, stages) {
+        match self.alone(rest.clone(), h, stages) {
             Err(Error::NothingEnclosed { reason }) => {
                 Ok(nothing(vec![format!("beside what stays as it is, nothing more is enclosed: {reason}")]))
             }

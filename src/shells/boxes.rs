@@ -6,11 +6,7 @@ use obvhs::bvh2::Bvh2;
 
 use super::Shell;
 use super::winding::reach;
-use crate::mesh::{Bounds, tree_over};
-
-/// By so much boxes are larger than what they hold, in the space where all of them together lie within −1 to 1: more than rounding to
-/// single precision moves a coordinate there.
-const MARGIN: f64 = 1.5e-7;
+use crate::mesh::{Bounds, MARGIN, margin, tree_over};
 
 /// A tree over the boxes of shells; those of open ones reach as far as their winding numbers are worth counting.
 pub(super) struct Boxes {
@@ -34,8 +30,7 @@ impl Boxes {
             .iter()
             .enumerate()
             .map(|(n, shell)| {
-                // Shells at the same place get different boxes: a tree of equal ones takes long to build.
-                let margin = MARGIN * (1.0 + 15.0 * (n as f64 * 0.618_033_988_749_894_9).fract());
+                let margin = margin(n);
                 let Bounds { min, max } = wide(shell);
                 Aabb::new(boxes.single(min, -margin), boxes.single(max, margin))
             })
