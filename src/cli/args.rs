@@ -13,6 +13,7 @@ use super::field_args::{FieldArgs, field_help};
 use super::length::{BandChoice, Length, Simplify, parse_duration, parse_size};
 use super::render::{ViewChoice, parse_view};
 use super::slice::SliceChoice;
+use super::volume::Volume;
 use crate::io::{Format, GridFormat, Unit};
 
 pub(super) const EXIT_CODES: &str = "\
@@ -418,6 +419,9 @@ pub struct SolidArgs {
     /// How far flat parts may move while triangles are saved, or `off` to keep all [default: 0.002h]
     #[arg(long, value_name = "LEN|off", conflicts_with = "no_fit")]
     pub simplify: Option<Simplify>,
+    /// Leave out closed surfaces that enclose less (8h3 for cubic voxels, 0.5mm3)
+    #[arg(long, value_name = "VOLUME")]
+    pub drop_smaller: Option<Volume>,
     /// Write the result, coloured by what is original (grey) and what was made up (red), to this file
     #[arg(long, value_name = "FILE.ply")]
     pub map: Option<PathBuf>,

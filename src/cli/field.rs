@@ -17,14 +17,14 @@ use super::report::RunReport;
 use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
-use super::{limits, machine, sdf, solid};
+use super::{dropped, limits, machine, sdf, solid};
 use crate::field::Sampled;
 use crate::field::language::{self, LanguageError, Node, Value};
 use crate::fit::FitOptions;
 use crate::io::{Colours, Format, GridFormat, GridValues, Unit, WriteOptions};
 use crate::mesh::Bounds;
 use crate::picture::ramp_colour;
-use crate::pipeline::{self, Built, FieldBand, FieldBuilder, FieldReport, Operand, Options, VoxelSize};
+use crate::pipeline::{self, Built, FieldBand, FieldBuilder, FieldReport, Operand, Options, Precision, VoxelSize};
 
 /// Values in a lattice reach so far from the surface, voxels, unless it is said otherwise.
 const USUAL_BAND: f64 = 4.0;
@@ -332,9 +332,16 @@ impl Run<'_> {
 
     fn mesh(&mut self, built: &Built, share: f64, target: &Target, report: &mut RunReport) -> Result<(), Failure> {
         let progress = &self.session.progress;
-        let options = self.simplified(built)?;
+        let precision = Precision::of_format(target.options.format);
+        let options = Options { precision, ..self.simplified(built)? };
         let made = pipeline::field_surface(built, &options, progress);
-        let (outcome, account) = made.map_err(|e| self.failure(&e))?;
+        let (mut outcome, mut account) = made.map_err(|e| self.failure(&e))?;
+        if let Some(volume) = self.args.drop_smaller {
+            let scale = Scale { voxel: Some(outcome.lattice.h), ..*self.scale };
+            let least = volume.resolve(&scale)?;
+            (outcome, _) = pipeline::drop_smaller(outcome, least).map_err(|e| self.failure(&e))?;
+            account.smaller = outcome.report.smaller;
+        }
         report.options["voxel"] = json!(outcome.lattice.h);
         report.stages.extend(outcome.report.stages.iter().cloned());
         report.fields.push(account);
@@ -437,6 +444,7 @@ fn say(session: &Session, report: &RunReport, frames: usize, unit: Option<Unit>)
             };
             rows.push(("done", format!("{label}: {how}")));
         }
+        rows.extend(dropped::smaller(&field.smaller, unit).map(|text| ("dropped", text)));
     }
     if let Some(distance) = &report.distance {
         rows.push(("voxel", summary::voxel(distance.voxel, distance.dims, unit)));

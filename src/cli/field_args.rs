@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::args::{CommonArgs, EXIT_CODES, InputArgs, OutputArgs};
 use super::choices::OrientChoice;
+use super::volume::Volume;
 use super::length::{BandChoice, Length, Simplify, parse_size};
 use crate::field::language;
 
@@ -48,6 +49,9 @@ pub struct FieldArgs {
     /// How far flat parts may move while triangles are saved, or `off` to keep all [default: 0.002h]
     #[arg(long, value_name = "LEN|off", conflicts_with = "no_fit")]
     pub simplify: Option<Simplify>,
+    /// Leave out closed surfaces that enclose less (8h3 for cubic voxels, 0.5mm3)
+    #[arg(long, value_name = "VOLUME")]
+    pub drop_smaller: Option<Volume>,
     /// Which side of the triangles of broken meshes is outside: find out, or trust the file
     #[arg(long, value_enum, default_value_t = OrientChoice::Auto)]
     pub orient: OrientChoice,

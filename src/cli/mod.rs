@@ -11,6 +11,7 @@ mod csg;
 mod csg_parser;
 mod devices;
 mod doubts;
+mod dropped;
 mod ending;
 mod exit;
 mod field;
@@ -34,6 +35,7 @@ mod session;
 mod slice;
 mod solid;
 mod summary;
+mod volume;
 mod words;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};

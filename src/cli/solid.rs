@@ -130,6 +130,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
         "fit": options.fit.is_some(),
         "precision": options.precision,
         "simplify_voxels": options.fit.map(|fit| fit.tolerance),
+        "drop_smaller_as_given": args.drop_smaller.map(|volume| volume.to_string()),
         "simplify_as_given": args.simplify.map(|simplify| simplify.to_string()),
         "threads": rayon::current_num_threads(),
         "max_memory_bytes": args.max_memory,
@@ -200,7 +201,15 @@ fn make(
         None => pipeline::boolean(&meshes, expression, options, &session.progress).map(Changed::from),
         Some(change) => change.apply(&meshes[0], options, scale, session, report)?,
     };
-    let Changed { outcome, canal_of } = made.map_err(|e| failure(&e, inputs, unit, args))?;
+    let Changed { mut outcome, mut canal_of } = made.map_err(|e| failure(&e, inputs, unit, args))?;
+    if let Some(volume) = args.drop_smaller {
+        let left;
+        (outcome, left) =
+            pipeline::drop_smaller(outcome, volume.resolve(scale)?).map_err(|e| failure(&e, inputs, unit, args))?;
+        if !canal_of.is_empty() {
+            canal_of = left.into_iter().map(|t| canal_of[t]).collect();
+        }
+    }
     drop(meshes);
     report.stages.extend(outcome.report.stages.iter().cloned());
     report.warnings.extend(outcome.report.warnings.iter().cloned());

@@ -1,6 +1,6 @@
 //! What a run says to a person: a few aligned lines, made from the report.
 
-use super::doubts;
+use super::{doubts, dropped};
 use super::input::Input;
 use super::report::{InputEntry, RunReport};
 use super::session::Session;
@@ -41,6 +41,7 @@ fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
         if pipeline.lattice {
             rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
         }
+        rows.extend(dropped::rows(pipeline, unit));
         rows.extend(doubts::rows(pipeline, unit));
     }
     rows.extend(result_rows(report, unit));

@@ -3,11 +3,12 @@
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-use super::offset::{MARGIN, shift, tangent};
-use super::{Body, MorphologyError, Offset, Region};
+use super::offset::MARGIN;
+use super::remains::Search;
+use super::{Balls, Body, MorphologyError, Offset, Region};
 use crate::contour::{ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
 use crate::lattice::{BRICK, Grid, Lattice};
-use crate::mesh::{Plane, TriMesh};
+use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
 use crate::vote::voxel_in_brick;
@@ -37,69 +38,86 @@ pub(super) const BESIDE: f64 = 0.6;
 /// Most samples along the edge of a triangle.
 const MOST_SAMPLES: usize = 64;
 
-/// The solid `first`, a level of `original`'s distance at `radius` (model units, positive outside), taken back by the same
-/// length: a closing for a positive radius, an opening for a negative one. Where that changes nothing, the vertices lie on
-/// triangles of `original` and have their numbers; elsewhere those of planes, numbered after them. With a `region` nothing
-/// changes elsewhere.
+/// The closing (for a positive radius of the balls) or opening of `original` that the balls leave. Where that changes nothing, the
+/// vertices lie on triangles of `original` and have their numbers; elsewhere those of planes, numbered after them. With a
+/// `region` nothing changes elsewhere.
 ///
 /// # Errors
 /// Those of [`exact`], and a stop.
 pub fn closed(
     original: &Body<'_>,
-    first: &Body<'_>,
-    radius: f64,
+    balls: &Balls<'_>,
     lattice: &Lattice,
     region: Option<&Region<'_>>,
     progress: &Progress,
-) -> Result<Offset, MorphologyError> {
-    let near = |mesh: &TriMesh, band: f64| {
-        exact(mesh, lattice, Sign::Pseudonormal, &ExactOptions { band: Band::Within(band), max_memory: None }, progress)
-    };
-    let mut closing = near(first.mesh, radius.abs() / lattice.h + MARGIN)?;
-    shift(&mut closing, (radius / lattice.h) as f32);
-    let within = (unchanged(radius, lattice.h) / lattice.h) as f32;
-    let own = near(original.mesh, MARGIN + region.map_or(0.0, |_| radius.abs() / lattice.h))?;
+) -> Result<Closed, MorphologyError> {
+    let h = lattice.h;
+    let own = own_distance(original, balls.radius, lattice, progress)?;
+    let mut field = balls.field(&own, lattice, progress)?;
+    let within = (unchanged(balls.radius, h) / h) as f32;
     let holds = |voxel: IVec3| region.is_none_or(|region| region.holds(voxel));
-    let changed = |voxel: IVec3| {
-        let (value, before) = (closing.get(voxel), own.get(voxel));
-        if (value - before).abs() < within || !holds(voxel) { before } else { value }
-    };
-    // Only the solid's own bricks reach along canals that stay, only those of the closing along what is filled.
-    let field = over(if region.is_some() { &own } else { &closing }, changed);
+    let changed = restore(&mut field, &own, within, &holds);
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
     let crossing = |edge: Edge| {
         let voxels = [edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]];
         let ends = voxels.map(model);
         let at = |t: f64| ends[0].lerp(ends[1], t);
-        let h = lattice.h;
         let free = voxels.into_iter().any(holds);
-        let stays = |t: &f64| !free || (first.at(at(*t), radius.abs() + h).0 + radius).abs() < unchanged(radius, h);
-        let own = voxels.map(|voxel| f64::from(own.get(voxel)) * h);
-        match original.passage(ends, own, 0.0).filter(stays) {
+        let stays = |t: &f64| !free || balls.at(at(*t), h).0.abs() < unchanged(balls.radius, h);
+        let before = voxels.map(|voxel| f64::from(own.get(voxel)) * h);
+        match original.passage(ends, before, 0.0).filter(stays) {
             Some(t) => Some(Crossing { t, triangle: original.distance().at(at(t))?.triangle }),
-            None => {
-                let values = ends.map(|p| first.at(p, radius.abs() + 2.0 * h).0);
-                Some(Crossing { t: first.passage(ends, values, -radius)?, triangle: NO_TRIANGLE })
-            }
+            None => Some(Crossing { t: balls.passage(ends)?, triangle: NO_TRIANGLE }),
         }
     };
     let mut contour = contour(lattice, &field, &crossing, &ContourOptions::default(), progress)?;
-    let changed: Vec<usize> =
+    let made: Vec<usize> =
         (0..contour.vertices.len()).filter(|&v| contour.vertices[v].triangle == NO_TRIANGLE).collect();
-    let planes: Vec<Plane> =
-        changed.par_iter().map(|&v| tangent(first, -radius, contour.mesh.positions[v], lattice.h)).collect();
+    let planes: Vec<Plane> = made.par_iter().map(|&v| balls.tangent(contour.mesh.positions[v], h)).collect();
     progress.check()?;
-    for (&v, n) in changed.iter().zip(original.mesh.triangles.len() as u32..) {
+    for (&v, n) in made.iter().zip(original.mesh.triangles.len() as u32..) {
         contour.vertices[v].triangle = n;
     }
-    Ok(Offset { contour, planes })
+    let search = Search { body: original, level: 0.0, side: -balls.radius.signum(), lattice, field: &own };
+    let thin = search.points(progress)?;
+    let remains = thin.into_iter().filter(|&p| balls.at(p, h).0.abs() < unchanged(balls.radius, h)).collect();
+    Ok(Closed { offset: Offset { contour, planes, remains }, changed })
 }
 
-/// The values of `value` at the voxels of the bricks of `grid`, and its classes elsewhere.
-fn over(grid: &Grid<f32>, value: impl Fn(IVec3) -> f32 + Sync) -> Grid<f32> {
-    let of_brick = |&brick: &IVec3| std::array::from_fn(|n| value(BRICK * brick + voxel_in_brick(n)));
-    let values = grid.bricks.active().par_iter().map(of_brick).collect();
-    Grid { bricks: grid.bricks.clone(), values, inside: grid.inside, outside: grid.outside }
+/// A closing or opening.
+pub struct Closed {
+    /// Its surface; the remains are points of the solid's own surface at walls (gaps, for an opening) that no voxel shows.
+    pub offset: Offset,
+    /// Whether it differs from the solid at any voxel.
+    pub changed: bool,
+}
+
+/// The distance to the solid, h, as far as balls around it reach.
+pub(super) fn own_distance(
+    original: &Body<'_>,
+    radius: f64,
+    lattice: &Lattice,
+    progress: &Progress,
+) -> Result<Grid<f32>, MorphologyError> {
+    let band = Band::Within(radius.abs() / lattice.h + MARGIN);
+    Ok(exact(original.mesh, lattice, Sign::Pseudonormal, &ExactOptions { band, max_memory: None }, progress)?)
+}
+
+/// Puts the distance before back where it differs by less than `within`, or where `holds` does not; whether a voxel outside of the solid
+/// (inside, for an opening) keeps another side.
+fn restore(field: &mut Grid<f32>, own: &Grid<f32>, within: f32, holds: &(impl Fn(IVec3) -> bool + Sync)) -> bool {
+    let bricks = field.bricks.clone();
+    let restored = field.values.par_iter_mut().zip(&own.values).zip(bricks.active()).map(|((values, own), &brick)| {
+        let mut changed = false;
+        for (n, (value, &before)) in values.iter_mut().zip(own).enumerate() {
+            if (*value - before).abs() < within || !holds(BRICK * brick + voxel_in_brick(n)) {
+                *value = before;
+            }
+            changed |= (*value < 0.0) != (before < 0.0);
+        }
+        changed
+    });
+    restored.reduce(|| false, |a, b| a | b)
 }
 
 /// Which points of a triangle a ball reaches.

@@ -7,13 +7,16 @@
 //! surface goes back to it, and triangles all of which a ball of the radius reaches from outside are kept by the fit.
 //! [`canals`] lists what a closing would fill, and lets it fill only some of that.
 
+mod balls;
 mod canals;
 mod closed;
 mod offset;
+mod remains;
 mod thin;
 
+pub use balls::{Balls, Centres, places};
 pub use canals::{Canal, CanalKind, Canals, Region, canals};
-pub use closed::{Reached, closed, reached};
+pub use closed::{Closed, Reached, closed, reached};
 pub use offset::{Body, Offset, offset};
 pub use thin::middles;
 

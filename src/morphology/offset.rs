@@ -6,6 +6,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::MorphologyError;
+use super::remains::Search;
 use crate::contour::{Contour, ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
 use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice};
 use crate::mesh::around::Around;
@@ -119,6 +120,9 @@ pub struct Offset {
     pub contour: Contour,
     /// The tangent planes, model units, normals outwards.
     pub planes: Vec<Plane>,
+    /// Points of the level around what is too thin for any voxel to lie in it, model units: of the outside for a level above 0,
+    /// of the inside for one below.
+    pub remains: Vec<DVec3>,
 }
 
 /// The surface where the distance to `body` is `level` (model units, negative inside), on a lattice that must
@@ -140,7 +144,8 @@ pub fn offset(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progres
     let planes: Vec<Plane> = contour.mesh.positions.par_iter().map(|&p| tangent(body, level, p, lattice.h)).collect();
     progress.check()?;
     contour.vertices.iter_mut().zip(0..).for_each(|(vertex, n)| vertex.triangle = n);
-    Ok(Offset { contour, planes })
+    let remains = Search { body, level, side: level.signum(), lattice, field: &field }.points(progress)?;
+    Ok(Offset { contour, planes, remains })
 }
 
 /// The plane through the level's point nearest to `p`, by one step along the gradient.

@@ -3,12 +3,12 @@
 use serde::Serialize;
 
 use super::frame::Frame;
-use super::morphology::{Run, usable};
+use super::morphology::{Run, offset_voxel, usable};
 use super::plan::{Offsets, check_offsets};
-use super::{Error, MorphologyOptions, Options, Outcome, boolean, prepare, stages};
+use super::{Error, MorphologyOptions, Options, Outcome, boolean, stages};
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
-use crate::morphology::{self, Body, Canal, Operation};
+use crate::morphology::{self, Balls, Body, Canal, Operation};
 use crate::progress::Progress;
 
 /// Options of [`canals`].
@@ -62,21 +62,21 @@ pub struct CanalOutcome {
 /// Those of [`boolean`]; [`Error::VoxelSize`] for a diameter that the lattice cannot hold; [`Error::MissingCanal`].
 pub fn canals(input: &TriMesh, options: &CanalOptions, progress: &Progress) -> Result<CanalOutcome, Error> {
     let radius = usable(options.max_diameter / 2.0)?;
-    let frame = Frame::of(std::slice::from_ref(input));
+    let frame = Frame::of(std::slice::from_ref(input), &options.solid);
     let input = &frame.local(std::slice::from_ref(input))[0];
     check_offsets(input, &options.solid, Offsets { count: 2, radius, thin: false })?;
     let solid = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let closing = MorphologyOptions { operation: Operation::Close, radius, mitre: None, solid: options.solid.clone() };
     let mut stages = stages::Stages::new(progress);
-    let h = prepare::spacing(&prepare::bounds(std::slice::from_ref(input))?, options.solid.voxel)?;
+    let h = offset_voxel(input, &closing)?;
     let run = Run { solid: &solid.mesh, h, options: &closing, progress };
 
     let body = Body::new(&solid.mesh, None);
-    let dilated = run.there(&body, radius, &mut stages)?;
-    let first = Body::new(&dilated, None);
+    let centres = run.there(&body, radius, &mut stages)?;
+    let balls = Balls::new(&centres, radius);
     stages.begin("canals")?;
     let lattice = run.lattice(0.0)?;
-    let canals = morphology::canals(&body, &first, radius, &lattice, progress).map_err(|e| run.error(e))?;
+    let canals = morphology::canals(&body, (&balls, &centres), &lattice, progress).map_err(|e| run.error(e))?;
     let removed = chosen(&options.remove, canals.list.len() as u32)?;
     let (mut outcome, canal_of) = if removed.is_empty() {
         let canal_of = canals.walls(&solid.mesh, &lattice);
@@ -85,7 +85,7 @@ pub fn canals(input: &TriMesh, options: &CanalOptions, progress: &Progress) -> R
         (outcome, canal_of)
     } else {
         let region = canals.region(|number| removed.contains(&number));
-        let made = run.back(&body, &first, radius, Some(&region), &mut stages)?;
+        let made = run.back(&body, &balls, radius, Some(&region), &mut stages)?;
         let outcome = run.finish(&solid, made, stages);
         let canal_of = vec![0; outcome.mesh.triangles.len()];
         (outcome, canal_of)

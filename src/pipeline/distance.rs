@@ -156,7 +156,7 @@ pub fn plan_distance(input: &TriMesh, options: &DistanceOptions) -> Result<Dista
 /// # Errors
 /// See [`Error`].
 pub fn distance(input: &TriMesh, options: &DistanceOptions, progress: &Progress) -> Result<DistanceOutcome, Error> {
-    let frame = Frame::of(std::slice::from_ref(input));
+    let frame = input.bounds().map_or_else(Frame::default, |bounds| Frame::around(&bounds));
     let input = &frame.local(std::slice::from_ref(input))[0];
     let (lattice, band) = place(input, options)?;
     let needed = plan(input, &lattice, band, options).memory;

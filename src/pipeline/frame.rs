@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 
-use super::{Outcome, Report};
+use super::{Options, Outcome, Precision, Report};
 use crate::field::{Placement, Shared, placed};
 use crate::lattice::Lattice;
 use crate::mesh::{Bounds, TriMesh};
@@ -13,6 +13,10 @@ use crate::vote::VoteReport;
 /// Operands farther away than so many times their longest side are far. Nearer ones stay where they are: there single precision still
 /// resolves half a millionth of them, and what is made has coordinates that STL holds.
 const FAR: f64 = 16.0;
+
+/// Steps of single precision in a voxel, at least, where a result in these numbers is made: 256 put what is fitted off by at most
+/// 0.002 h.
+const LEAST_STEPS: f64 = 256.0;
 
 /// Where the pipelines' origin lies, model units. Along an axis on which the operands lie far away, it is moved beside them. There, taking it off a coordinate and adding it again is exact in `f64`: the two are within a
 /// factor of two of each other (Sterbenz). Along the others single precision resolves the operands as they are.
@@ -40,9 +44,19 @@ impl Frame {
     }
 
     /// The frame of several operands, whatever is wrong with them.
-    pub(super) fn of(operands: &[TriMesh]) -> Self {
+    pub(super) fn of(operands: &[TriMesh], options: &Options) -> Self {
         let bounds = operands.iter().filter_map(TriMesh::bounds).reduce(|a, b| a.union(&b));
-        bounds.map_or(Self::default(), |bounds| Self::around(&bounds))
+        bounds.map_or(Self::default(), |bounds| Self::of_box(&bounds, options))
+    }
+
+    /// The frame of operands in a box. A result in single precision is made where it will be as long as there are enough steps to a
+    /// voxel: then it is valid in these numbers, while one that is moved there is rounded again.
+    pub(super) fn of_box(bounds: &Bounds, options: &Options) -> Self {
+        let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let step = farthest * f64::from(f32::EPSILON);
+        let h = options.voxel.spacing(bounds.size().max_element());
+        let stays = options.precision == Precision::Single && step * LEAST_STEPS <= h;
+        if stays { Self::default() } else { Self::around(bounds) }
     }
 
     /// A box as the pipelines see it.
@@ -103,6 +117,9 @@ impl Frame {
         }
         if let Some(topology) = &mut report.topology {
             topology.lost.iter_mut().for_each(|lost| self.place(&mut lost.at));
+        }
+        if let Some(place) = report.morphology.as_mut().and_then(|report| report.thin_place.as_mut()) {
+            self.place(place);
         }
         if let Some(canals) = &mut report.canals {
             canals.canals.iter_mut().for_each(|canal| self.place(&mut canal.position));

@@ -4,6 +4,7 @@ mod apart;
 mod backend;
 mod canals;
 mod colours;
+mod crumbs;
 mod distance;
 mod field;
 mod frame;
@@ -33,6 +34,7 @@ pub use field::{
     Built, FieldBand, FieldBuilder, FieldReport, Operand, OperandReport, field_grid, field_spacing, field_surface,
     field_values,
 };
+pub use crumbs::{Dropped, drop_smaller};
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
 pub use plan::{plan, plan_canals, plan_morphology, plan_thicken};
 pub use report::{LdiReport, Report, StageTime, ThinRegion, ThinReport};
@@ -291,7 +293,7 @@ fn evaluate(
     options: &Options,
     progress: &Progress,
 ) -> Result<Outcome, Error> {
-    let frame = Frame::of(operands);
+    let frame = Frame::of(operands, options);
     let operands = &*frame.local(operands);
     let h = prepare::spacing(&prepare::bounds(operands)?, options.voxel)?;
     plan::check_standing(operands.iter().map(|operand| operand.triangles.len()).sum(), options)?;

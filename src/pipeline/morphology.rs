@@ -1,16 +1,22 @@
 //! Dilate, erode, close and open.
 
+use glam::DVec3;
+use rayon::prelude::*;
 use serde::Serialize;
 
+use super::crumbs::without_made_crumbs;
 use super::frame::Frame;
 use super::plan::{Offsets, check_offsets};
 use super::{Error, Options, Outcome, TriangleSource, boolean, prepare, refine, stages};
-use crate::fit::{Facets, FitOptions, FitReport, Surface, Wanted, fit};
+use crate::fit::{Facets, FitOptions, FitReport, Sides, Surface, Wanted, fit};
 use crate::lattice::Lattice;
 use crate::ldi::{Evidence, Expression};
 use crate::mesh::{TriMesh, ValidateOptions, validate};
-use crate::morphology::{Body, MorphologyError, Offset, Operation, Region, closed, offset, reached};
+use crate::morphology::{
+    Balls, Body, Centres, MorphologyError, Offset, Operation, Region, closed, offset, places, reached,
+};
 use crate::progress::Progress;
+use crate::sdf::exact::{ExactDistance, PointSign};
 
 /// Options of [`morphology`].
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +45,12 @@ pub struct MorphologyReport {
     pub volume_after: f64,
     /// Triangles of the result that the operation made; the others lie on the solid's own.
     pub made: usize,
+    /// The voxel of the offsets, model units: smaller than that of the solid where the radius or what is left asks for it.
+    pub voxel: f64,
+    /// Places where what is left is thinner than that voxel, and is not there, or not whole.
+    pub too_thin: usize,
+    /// One of them, model units.
+    pub thin_place: Option<[f64; 3]>,
 }
 
 /// Repairs `input` and dilates, erodes, closes or opens the solid.
@@ -48,20 +60,59 @@ pub struct MorphologyReport {
 /// the lattice cannot hold.
 pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progress) -> Result<Outcome, Error> {
     let radius = usable(options.radius)?;
-    let frame = Frame::of(std::slice::from_ref(input));
+    let frame = Frame::of(std::slice::from_ref(input), &options.solid);
     let input = &frame.local(std::slice::from_ref(input))[0];
     check_offsets(input, &options.solid, Offsets { count: options.operation.offsets(), radius, thin: false })?;
     let outcome = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let mut stages = stages::Stages::new(progress);
-    let h = prepare::spacing(&prepare::bounds(std::slice::from_ref(input))?, options.solid.voxel)?;
+    let h = offset_voxel(input, options)?;
     let run = Run { solid: &outcome.mesh, h, options, progress };
+    let finer = |h: f64| is_affordable(input, options, h);
     let made = match options.operation {
-        Operation::Dilate => run.one_way(&Body::new(run.solid, options.mitre), radius, &mut stages)?,
-        Operation::Erode => run.one_way(&Body::new(run.solid, options.mitre), -radius, &mut stages)?,
-        Operation::Close => run.there_and_back(radius, &mut stages)?,
-        Operation::Open => run.there_and_back(-radius, &mut stages)?,
+        Operation::Dilate | Operation::Erode => {
+            let level = if options.operation == Operation::Dilate { radius } else { -radius };
+            let body = Body::new(run.solid, options.mitre);
+            run.refined(finer, |run| run.one_way(&body, level, &mut stages))?
+        }
+        Operation::Close => run.refined(finer, |run| run.there_and_back(radius, &mut stages))?,
+        Operation::Open => run.refined(finer, |run| run.there_and_back(-radius, &mut stages))?,
     };
     Ok(frame.global(run.finish(&outcome, made, stages)))
+}
+
+/// Voxels of a radius, at least: of less, a ball passes between voxels; back and forth, chords of less are off by more than a
+/// sixteenth of a voxel.
+const VOXELS_OF_RADIUS: [f64; 2] = [1.0, 2.0];
+
+/// Thin remains let voxels be halved so often, at most, and not below this many along the model's longest side after the first time:
+/// the surface has four times as many each time.
+const MOST_HALVINGS: u32 = 3;
+const MOST_ALONG: f64 = 600.0;
+
+/// A place is left out where the surface is farther from it than this, h.
+const LEFT_OUT: f64 = 0.75;
+
+/// The voxel of the offsets, model units: the one that was asked for, halved until the radius has enough of them.
+pub(super) fn offset_voxel(input: &TriMesh, options: &MorphologyOptions) -> Result<f64, Error> {
+    let asked = prepare::spacing(&prepare::bounds(std::slice::from_ref(input))?, options.solid.voxel)?;
+    let most = options.radius / VOXELS_OF_RADIUS[options.operation.offsets() as usize - 1];
+    let mut h = asked;
+    while h > most {
+        h /= 2.0;
+    }
+    if h < asked {
+        let finer = Options { voxel: super::VoxelSize::Length(h), ..options.solid.clone() };
+        let offsets = Offsets { count: options.operation.offsets(), radius: options.radius, thin: false };
+        check_offsets(input, &finer, offsets)?;
+    }
+    Ok(h)
+}
+
+/// Whether offsets with voxels of `h` cost no more than may be.
+fn is_affordable(input: &TriMesh, options: &MorphologyOptions, h: f64) -> bool {
+    let finer = Options { voxel: super::VoxelSize::Length(h), ..options.solid.clone() };
+    let offsets = Offsets { count: options.operation.offsets(), radius: options.radius, thin: false };
+    check_offsets(input, &finer, offsets).is_ok()
 }
 
 /// A radius, or why it is none.
@@ -75,8 +126,13 @@ pub(super) struct Made {
     pub surface: Surface,
     own: Vec<Option<u32>>,
     fit: Option<FitReport>,
+    /// The voxel it was made with, model units.
+    h: f64,
+    /// Points of what no voxel shows and the surface does not have, model units.
+    too_thin: Vec<DVec3>,
 }
 
+#[derive(Clone, Copy)]
 pub(super) struct Run<'a> {
     pub solid: &'a TriMesh,
     pub h: f64,
@@ -85,6 +141,27 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
+    /// What `make` makes, with voxels halved while they leave something out and `is_affordable` holds.
+    fn refined(
+        &self,
+        is_affordable: impl Fn(f64) -> bool,
+        mut make: impl FnMut(&Self) -> Result<Made, Error>,
+    ) -> Result<Made, Error> {
+        let longest = super::prepare::bounds(std::slice::from_ref(self.solid))?.size().max_element();
+        let mut run = *self;
+        for halvings in 0.. {
+            let made = make(&run)?;
+            let h = run.h / 2.0;
+            let is_too_fine = halvings > 0 && longest / h > MOST_ALONG;
+            if made.too_thin.is_empty() || halvings == MOST_HALVINGS || is_too_fine || !is_affordable(h) {
+                let all = made.surface.mesh.triangles.is_empty();
+                return if all { Err(self.all_too_thin(run.h)) } else { Ok(made) };
+            }
+            run.h = h;
+        }
+        unreachable!("the last halving returns")
+    }
+
     pub(super) fn one_way(&self, body: &Body<'_>, level: f64, stages: &mut stages::Stages<'_>) -> Result<Made, Error> {
         stages.begin("offset")?;
         let lattice = self.lattice(level.max(0.0) * self.options.mitre.unwrap_or(1.0))?;
@@ -96,48 +173,62 @@ impl Run<'_> {
 
     fn there_and_back(&self, radius: f64, stages: &mut stages::Stages<'_>) -> Result<Made, Error> {
         let body = Body::new(self.solid, None);
-        let first = self.there(&body, radius, stages)?;
-        self.back(&body, &Body::new(&first, None), radius, None, stages)
+        let centres = self.there(&body, radius, stages)?;
+        self.back(&body, &Balls::new(&centres, radius), radius, None, stages)
     }
 
-    /// The first step of a closing or opening, as a surface.
+    /// The first step of a closing or opening: where centres of balls can be.
     pub(super) fn there(
         &self,
         body: &Body<'_>,
         radius: f64,
         stages: &mut stages::Stages<'_>,
-    ) -> Result<TriMesh, Error> {
+    ) -> Result<Centres, Error> {
         stages.begin("first offset")?;
         let lattice = self.lattice(radius.max(0.0))?;
-        let there = offset(body, radius, &lattice, self.progress).map_err(|e| self.error(e))?;
+        let mut there = offset(body, radius, &lattice, self.progress).map_err(|e| self.error(e))?;
+        let between = std::mem::take(&mut there.remains);
+        if there.contour.mesh.triangles.is_empty() && !between.is_empty() {
+            return Ok(Centres::new(TriMesh::default(), &between, self.h));
+        }
         let off = |p| (body.at(p, radius.abs() + self.h).0 - radius).abs();
         // All triangles stay: the second distance is to this surface.
         let whole = FitOptions { tolerance: 0.0, ..self.options.solid.fit.unwrap_or_default() };
         let made =
             self.fitted((there, &lattice), (&TriMesh::default(), &off), Evidence::default(), Some(whole), radius)?;
-        Ok(made.surface.mesh)
+        Ok(Centres::new(made.surface.mesh, &between, self.h))
     }
 
-    /// The second step, from `first`; within a region, or everywhere.
+    /// The second step, by the balls of the first; within a region, or everywhere.
     pub(super) fn back(
         &self,
         body: &Body<'_>,
-        first: &Body<'_>,
+        balls: &Balls<'_>,
         radius: f64,
         region: Option<&Region<'_>>,
         stages: &mut stages::Stages<'_>,
     ) -> Result<Made, Error> {
         stages.begin("second offset")?;
         let lattice = self.lattice(0.0)?;
-        let back = closed(body, first, radius, &lattice, region, self.progress).map_err(|e| self.error(e))?;
+        let back = closed(body, balls, &lattice, region, self.progress).map_err(|e| self.error(e))?;
         let reached = reached(body, radius, &lattice, region, self.progress)?;
+        if !back.changed && reached.iter().all(|reached| reached.touched == reached.tried) {
+            return Ok(self.unchanged());
+        }
         stages.begin("fit")?;
         let evidence = Evidence::of_samples(reached.iter().map(|r| (r.tried, r.touched)));
         let off = |p| {
             let own = body.at(p, self.h).0.abs();
-            if own < 1e-3 * self.h { own } else { own.min((first.at(p, radius.abs() + self.h).0 + radius).abs()) }
+            if own < 1e-3 * self.h { own } else { own.min(balls.at(p, self.h).0.abs()) }
         };
-        self.fitted((back, &lattice), (self.solid, &off), evidence, self.options.solid.fit, -radius)
+        self.fitted((back.offset, &lattice), (self.solid, &off), evidence, self.options.solid.fit, -radius)
+    }
+
+    /// The solid as it is.
+    fn unchanged(&self) -> Made {
+        let own = (0..self.solid.triangles.len() as u32).map(Some).collect();
+        let surface = Surface::new(self.solid.clone(), vec![Sides::of([]); self.solid.positions.len()]);
+        Made { surface, own, fit: None, h: self.h, too_thin: Vec::new() }
     }
 
     /// The lattice for the solid grown by `room`, model units.
@@ -156,12 +247,11 @@ impl Run<'_> {
         level: f64,
     ) -> Result<Made, Error> {
         if offset.contour.mesh.triangles.is_empty() {
-            let reason = if level < 0.0 && self.options.operation != Operation::Close {
-                format!("nothing is left: the solid is nowhere thicker than {}", 2.0 * level.abs())
-            } else {
-                "nothing is left".into()
-            };
-            return Err(Error::NothingEnclosed { reason });
+            if offset.remains.is_empty() {
+                return Err(self.nothing_left(level));
+            }
+            let surface = Surface::new(TriMesh::default(), Vec::new());
+            return Ok(Made { surface, own: Vec::new(), fit: None, h: self.h, too_thin: offset.remains });
         }
         let facets = Facets::new(source, offset.planes).with_wanted(off);
         let mut surface = refine::merged(offset.contour, &facets, lattice, &self.options.solid, self.progress)?;
@@ -173,11 +263,38 @@ impl Run<'_> {
         }
         let own = |t: u32| surface.facet(&facets, t).filter(|&facet| (facet as usize) < source.triangles.len());
         let own = (0..surface.mesh.triangles.len() as u32).map(own).collect();
-        Ok(Made { surface, own, fit: fitted })
+        let too_thin = self.left_out(&offset.remains, &surface.mesh);
+        Ok(Made { surface, own, fit: fitted, h: self.h, too_thin })
+    }
+
+    fn nothing_left(&self, level: f64) -> Error {
+        let reason = if level < 0.0 && self.options.operation != Operation::Close {
+            format!("nothing is left: the solid is nowhere thicker than {}", 2.0 * level.abs())
+        } else {
+            "nothing is left".into()
+        };
+        Error::NothingEnclosed { reason }
+    }
+
+    fn all_too_thin(&self, h: f64) -> Error {
+        let reason = format!("what is left is thinner than a voxel of {h} everywhere: a smaller voxel shows it");
+        Error::NothingEnclosed { reason }
+    }
+
+    /// Those of the points that `surface` does not have.
+    fn left_out(&self, remains: &[DVec3], surface: &TriMesh) -> Vec<DVec3> {
+        if remains.is_empty() {
+            return Vec::new();
+        }
+        let distance = ExactDistance::of(surface, PointSign::Unsigned);
+        let is_there = |p: &DVec3| distance.within(*p, LEFT_OUT * self.h).is_some();
+        remains.par_iter().copied().filter(|p| !is_there(p)).collect()
     }
 
     pub(super) fn finish(&self, solid: &Outcome, made: Made, stages: stages::Stages<'_>) -> Outcome {
-        let Made { surface, own, fit } = made;
+        let Made { surface, mut own, fit, h, too_thin } = made;
+        let mut mesh = surface.mesh;
+        let crumbs = without_made_crumbs(&mut mesh, &mut own, h);
         let source = |own: &Option<u32>| own.map_or(TriangleSource::Closed, |t| solid.sources[t as usize]);
         let sources: Vec<TriangleSource> = own.iter().map(source).collect();
         let mut report = solid.report.clone();
@@ -186,12 +303,16 @@ impl Run<'_> {
             operation: self.options.operation,
             radius: self.options.radius,
             volume_before: volume(self.solid),
-            volume_after: volume(&surface.mesh),
+            volume_after: volume(&mesh),
             made: own.iter().filter(|own| own.is_none()).count(),
+            voxel: h,
+            too_thin: places(&too_thin, 2.0 * h),
+            thin_place: too_thin.first().map(DVec3::to_array),
         });
         report.fit = fit;
+        report.crumbs = report.crumbs.and(crumbs);
         report.stages.extend(stages.finish());
-        Outcome { mesh: surface.mesh, sources, lattice: solid.lattice, report }
+        Outcome { mesh, sources, lattice: solid.lattice, report }
     }
 
     pub(super) fn error(&self, error: MorphologyError) -> Error {

@@ -123,7 +123,7 @@ pub fn plan_thicken(input: &TriMesh, options: &ThickenOptions) -> Result<Plan, E
 }
 
 fn plan_with(operands: &[TriMesh], options: &Options, offsets: Offsets) -> Result<Plan, Error> {
-    let operands = &*Frame::of(operands).local(operands);
+    let operands = &*Frame::of(operands, options).local(operands);
     let bounds = prepare::bounds(operands)?;
     if offsets != Offsets::default() {
         return Ok(Input::surveyed(operands).cost(&prepare::lattice(&bounds, options.voxel)?, options, offsets));

@@ -4,6 +4,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::apart::{Standing, touch};
+use super::crumbs::without_crumbs;
 use super::prepare::Soup;
 use super::stages::Stages;
 use super::{Error, Options, Outcome, Report, TriangleSource, backend, plan, prepare, refine, solid};
@@ -126,7 +127,9 @@ impl Job<'_> {
         report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
         report.ldi.made_by = made_by;
         let mesh = refine::with_own_numbers(surface, &soup.mesh, options.precision, progress)?;
-        Ok(Outcome { mesh, sources, lattice, report })
+        let mut made = Outcome { mesh, sources, lattice, report };
+        without_crumbs(&mut made, &soup, h);
+        Ok(made)
     }
 }
 

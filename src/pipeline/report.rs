@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::apart::Apart;
 use super::stages::Stages;
 use super::{
-    BackendReport, CanalReport, MorphologyReport, Outcome, StandingReport, ThickenReport, TopologyReport, solid,
+    BackendReport, CanalReport, Dropped, MorphologyReport, Outcome, StandingReport, ThickenReport, TopologyReport, solid,
     topology,
 };
 
@@ -42,6 +42,10 @@ pub struct Report {
     pub thicken: Option<ThickenReport>,
     /// Canals that were listed; `None` where none were looked for.
     pub canals: Option<CanalReport>,
+    /// Surfaces under eight voxels that no operand asked for; they are not in the result.
+    pub crumbs: Dropped,
+    /// Surfaces smaller than the caller wants, see [`super::drop_smaller`].
+    pub smaller: Dropped,
     /// Triangles of the result that close holes, or that morphology has made.
     pub closed_triangles: usize,
     /// Wall-clock time of each stage, in order.

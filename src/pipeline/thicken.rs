@@ -70,7 +70,7 @@ pub struct ThickenReport {
 /// cannot hold, or that is more than twice the model's longest side.
 pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -> Result<Outcome, Error> {
     let least = usable(options.least)?;
-    let frame = Frame::of(std::slice::from_ref(input));
+    let frame = Frame::of(std::slice::from_ref(input), &options.solid);
     let input = &frame.local(std::slice::from_ref(input))[0];
     let bounds = prepare::bounds(std::slice::from_ref(input))?;
     let h = prepare::lattice(&bounds, options.solid.voxel)?.h;

@@ -50,7 +50,7 @@ pub const PERCENTILES: [usize; 6] = [1, 5, 25, 50, 75, 95];
 /// Those of [`super::boolean`] up to the rays.
 pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Result<ThicknessReport, Error> {
     let operands = std::slice::from_ref(input);
-    let operands = &*Frame::of(operands).local(operands);
+    let operands = &*Frame::of(operands, options).local(operands);
     let bounds = prepare::bounds(operands)?;
     let lattice = prepare::lattice(&bounds, options.voxel)?;
     plan::check_limits(operands, &lattice, options, plan::Offsets::default())?;

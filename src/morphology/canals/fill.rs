@@ -6,11 +6,9 @@ use rustc_hash::FxHashMap;
 
 use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick};
 use crate::mesh::edges::Union;
-use crate::morphology::closed::unchanged;
-use crate::morphology::offset::{MARGIN, shift};
-use crate::morphology::{Body, MorphologyError};
+use crate::morphology::closed::{own_distance, unchanged};
+use crate::morphology::{Balls, Body, MorphologyError};
 use crate::progress::Progress;
-use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
 use crate::vote::voxel_in_brick;
 
 /// The number of no voxel.
@@ -41,16 +39,13 @@ impl Fill {
     /// Those outside of `original` and, by more than a closing takes for unchanged, within the closing.
     pub(super) fn new(
         original: &Body<'_>,
-        first: &Body<'_>,
-        radius: f64,
+        balls: &Balls<'_>,
         lattice: &Lattice,
         progress: &Progress,
     ) -> Result<Self, MorphologyError> {
-        let options = ExactOptions { band: Band::Within(radius / lattice.h + MARGIN), max_memory: None };
-        let own = exact(original.mesh, lattice, Sign::Pseudonormal, &options, progress)?;
-        let mut closing = exact(first.mesh, lattice, Sign::Pseudonormal, &options, progress)?;
-        shift(&mut closing, (radius / lattice.h) as f32);
-        let least = (unchanged(radius, lattice.h) / lattice.h) as f32;
+        let own = own_distance(original, balls.radius, lattice, progress)?;
+        let closing = balls.field(&own, lattice, progress)?;
+        let least = (unchanged(balls.radius, lattice.h) / lattice.h) as f32;
         let of_brick = |(values, &brick): (&[f32; BRICK_VOXELS], &IVec3)| {
             let voxels = values.iter().enumerate().filter(|(_, own)| **own > 0.0);
             let voxels = voxels.map(|(n, _)| BRICK * brick + voxel_in_brick(n));

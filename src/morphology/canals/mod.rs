@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::closed::{BESIDE, samples};
-use super::{Body, MorphologyError};
+use super::{Balls, Body, Centres, MorphologyError};
 use crate::lattice::{Grid, Lattice};
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::Progress;
@@ -117,24 +117,25 @@ impl Region<'_> {
     }
 }
 
-/// The canals that a closing by `radius` (model units) fills in the solid `original`, whose dilation is `first`.
+/// The canals that a closing of the solid `original` by these balls fills.
 ///
 /// # Errors
 /// Those of [`crate::sdf::exact::exact`], and a stop.
 pub fn canals(
     original: &Body<'_>,
-    first: &Body<'_>,
-    radius: f64,
+    (balls, centres): (&Balls<'_>, &Centres),
     lattice: &Lattice,
     progress: &Progress,
 ) -> Result<Canals, MorphologyError> {
-    let fill = Fill::new(original, first, radius, lattice, progress)?;
-    let shells = [original, first].map(|body| topology::shells(body.mesh));
+    let fill = Fill::new(original, balls, lattice, progress)?;
+    let shells = [&topology::shells(original.mesh), &centres.spaces];
     let parts = fill.parts();
     let judge = |part: &Part| {
         progress.check()?;
-        let changes = topology::changes(part, &fill, [original, first], &shells, lattice);
-        Ok(passage::measure(part, &changes, original.distance(), lattice))
+        let changes = topology::changes(part, &fill, [original, &balls.centres], shells, lattice);
+        let canal = passage::measure(part, &changes, original.distance(), lattice);
+        // Where a ball passes halfway in all the same, only the edges of a wide place are rounded.
+        Ok(canal.filter(|canal| canal.diameter < 2.0 * balls.radius))
     };
     let judged: Vec<Option<Canal>> = parts.par_iter().map(judge).collect::<Result<_, MorphologyError>>()?;
     let roundings = judged.iter().filter(|canal| canal.is_none()).count();

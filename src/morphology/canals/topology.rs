@@ -35,7 +35,7 @@ pub(super) fn changes(
     part: &Part,
     fill: &Fill,
     bodies: [&Body<'_>; 2],
-    shells: &[Vec<u32>; 2],
+    shells: [&Vec<u32>; 2],
     lattice: &Lattice,
 ) -> Changes {
     let near = |which: usize, voxels: &mut dyn Iterator<Item = IVec3>| {

@@ -12,7 +12,7 @@ pub use build::{Built, FieldBuilder, Operand};
 use super::distance::DistanceOutcome;
 use super::frame::Frame;
 use super::morphology::volume;
-use super::{DistanceReport, Error, Options, Outcome, Report, TriangleSource, VoxelSize, prepare, refine, stages};
+use super::{DistanceReport, Dropped, Error, Options, Outcome, Report, TriangleSource, VoxelSize, prepare, refine, stages};
 use crate::field::filter::FilterError;
 use crate::field::{Extent, Field, FillError, FillOptions, LevelError, Shared, fill, level};
 use crate::fit::{Facets, FitReport, fit};
@@ -42,6 +42,8 @@ pub struct FieldReport {
     pub volume: f64,
     /// Sharp edges and simplification; `None` without a fit.
     pub fit: Option<FitReport>,
+    /// Surfaces smaller than the caller wants, see [`crate::pipeline::drop_smaller`].
+    pub smaller: Dropped,
 }
 
 /// How an operand became a field.
@@ -62,7 +64,7 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
     stages.begin("field")?;
     let extent = shape_extent(&built.field)?;
     let h = field_spacing(built, options)?;
-    let frame = Frame::around(&extent);
+    let frame = Frame::of_box(&extent, options);
     let mut extent = frame.local_bounds(&extent);
     let field = &*frame.local_field(&built.field);
     let mut tries = 0;
@@ -113,7 +115,13 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         stages: stages.finish(),
         ..Report::default()
     };
-    let account = FieldReport { operands: built.operands.clone(), made, volume: volume(&surface.mesh), fit: fitted };
+    let account = FieldReport {
+        operands: built.operands.clone(),
+        made,
+        volume: volume(&surface.mesh),
+        fit: fitted,
+        smaller: Dropped::default(),
+    };
     Ok((frame.global(Outcome { mesh: surface.mesh, sources: origins, lattice, report }), account))
 }
 
@@ -152,7 +160,7 @@ pub fn field_grid(
     let mut stages = stages::Stages::new(progress);
     stages.begin("field")?;
     let extent = built.field.extent().bounds().or(built.parts).ok_or_else(endless)?;
-    let frame = Frame::around(&extent);
+    let frame = Frame::of_box(&extent, options);
     let mut lattice = prepare::lattice(&frame.local_bounds(&extent), options.voxel)?;
     let h = lattice.h;
     let band = match band {

@@ -1,0 +1,140 @@
+//! What balls of one radius reach.
+
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use super::offset::MARGIN;
+use super::{Body, MorphologyError};
+use crate::lattice::{BRICK_VOXELS, Grid, Lattice, Slot};
+use crate::mesh::{Plane, TriMesh};
+use crate::mesh::edges::Union;
+use crate::progress::Progress;
+use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
+
+/// A point is a triangle this long, h.
+const POINT: f64 = 1e-3;
+
+/// Centres in the same cube of this side, h, or in two that touch, lie in one space: what parts two spaces is as thick as a
+/// ball, and a ball is at least four voxels wide.
+const ONE_SPACE: f64 = 1.0;
+
+/// Where the centres of balls that do not enter the solid (that do not leave it, for an opening) can be: the boundary of that
+/// region.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Centres {
+    /// The surface of it that the lattice shows, and a very small triangle at each of the points between the voxels; it
+    /// bounds nothing.
+    pub mesh: TriMesh,
+    /// For each triangle the number of the space that it bounds.
+    pub spaces: Vec<u32>,
+}
+
+impl Centres {
+    /// Of the surface, closed, that the lattice shows, and the points of its level around what lies between the voxels; model units.
+    pub fn new(mut surface: TriMesh, points: &[DVec3], h: f64) -> Self {
+        for &p in points {
+            let first = surface.positions.len() as u32;
+            surface.positions.extend([DVec3::X, DVec3::Y, DVec3::Z].map(|axis| p + axis * (POINT * h)));
+            surface.triangles.push([first, first + 1, first + 2]);
+        }
+        let spaces = spaces(&surface, ONE_SPACE * h);
+        Self { mesh: surface, spaces }
+    }
+}
+
+/// For each triangle the number of all that hang together, or lie in cubes of `side` (model units) that touch.
+fn spaces(mesh: &TriMesh, side: f64) -> Vec<u32> {
+    let mut sets = Union::new(mesh.positions.len());
+    for &[a, b, c] in &mesh.triangles {
+        sets.join(a, b);
+        sets.join(b, c);
+    }
+    join_near(&mut sets, &mesh.positions, side);
+    mesh.triangles.iter().map(|t| sets.root(t[0])).collect()
+}
+
+/// Joins points that lie in cubes of `side` that touch.
+fn join_near(sets: &mut Union, points: &[DVec3], side: f64) {
+    let mut first: FxHashMap<IVec3, u32> = FxHashMap::default();
+    for (v, &p) in (0..).zip(points) {
+        let other = *first.entry((p / side).floor().as_ivec3()).or_insert(v);
+        sets.join(v, other);
+    }
+    for (&cube, &v) in &first {
+        let beside = (0..27).map(|n| cube + IVec3::new(n % 3, n / 3 % 3, n / 9) - 1);
+        for &other in beside.filter_map(|cube| first.get(&cube)) {
+            sets.join(v, other);
+        }
+    }
+}
+
+/// In how many places the points lie; those in cubes of `side` that touch lie in one.
+pub fn places(points: &[DVec3], side: f64) -> usize {
+    let mut sets = Union::new(points.len());
+    join_near(&mut sets, points, side);
+    (0..points.len() as u32).filter(|&n| sets.root(n) == n).count()
+}
+
+/// A closing or opening by balls whose centres are known: its surface is where they reach.
+pub struct Balls<'a> {
+    pub(super) centres: Body<'a>,
+    /// Model units; positive outside, for a closing.
+    pub(super) radius: f64,
+}
+
+impl<'a> Balls<'a> {
+    /// Balls of `radius` (model units; negative: inside, for an opening) around `centres`.
+    pub fn new(centres: &'a Centres, radius: f64) -> Self {
+        Self { centres: Body::sheet(&centres.mesh), radius }
+    }
+
+    /// The signed distance to the surface that the balls leave, negative inside of it, and its gradient, at a point that is
+    /// no centre and not farther than about a radius from the surface; model units.
+    pub fn at(&self, p: DVec3, likely: f64) -> (f64, DVec3) {
+        let side = self.radius.signum();
+        let (far, gradient) = self.centres.at(p, self.radius.abs() + likely);
+        (side * (self.radius.abs() - far), -side * gradient)
+    }
+
+    /// The plane through the surface's point nearest to `p`, by one step along the gradient; model units.
+    pub(super) fn tangent(&self, p: DVec3, h: f64) -> Plane {
+        let (value, normal) = self.at(p, h);
+        Plane { normal, offset: normal.dot(p) - value }
+    }
+
+    /// Where between `ends`, model units, that distance is 0.
+    pub(super) fn passage(&self, ends: [DVec3; 2]) -> Option<f64> {
+        let length = ends[0].distance(ends[1]);
+        let values = ends.map(|p| self.centres.at(p, self.radius.abs() + length).0);
+        self.centres.passage(ends, values, self.radius.abs())
+    }
+
+    /// That distance, h, at the voxels of `own`, the distance to the solid itself: at centres it is that one, and
+    /// nowhere is more than it outside of a closing, or less inside of an opening.
+    pub(super) fn field(
+        &self,
+        own: &Grid<f32>,
+        lattice: &Lattice,
+        progress: &Progress,
+    ) -> Result<Grid<f32>, MorphologyError> {
+        let reach = self.radius.abs() / lattice.h;
+        let options = ExactOptions { band: Band::Within(reach + MARGIN), max_memory: None };
+        let far = exact(self.centres.mesh, lattice, Sign::Pseudonormal, &options, progress)?;
+        let (reach, side) = (reach as f32, self.radius.signum() as f32);
+        let outside = [far.outside.abs(); BRICK_VOXELS];
+        let mut field = own.clone();
+        field.values.par_iter_mut().zip(own.bricks.active()).for_each(|(values, &brick)| {
+            let far = match far.bricks.slot(brick) {
+                Slot::Active(n) => &far.values[n as usize],
+                Slot::Inside | Slot::Outside => &outside,
+            };
+            for (value, far) in values.iter_mut().zip(far) {
+                let before = side * *value;
+                let after = if before >= reach { before } else { before.min(reach - far.abs()) };
+                *value = side * after;
+            }
+        });
+        Ok(field)
+    }
+}
