@@ -10,7 +10,8 @@ use super::change::RemoveChoice;
 use super::choices::{Defect, EdgeChoice, MethodChoice, OrientChoice, SideChoice, SignChoice, VoteChoice};
 use super::devices::DevicesArgs;
 use super::field_args::{FieldArgs, field_help};
-use super::length::{BandChoice, Length, Simplify, parse_duration, parse_size};
+use super::keep::KeepArgs;
+use super::length::{BandChoice, Length, Simplify, parse_duration, parse_resolution, parse_size};
 use super::render::{ViewChoice, parse_view};
 use super::slice::SliceChoice;
 use crate::io::{Format, GridFormat, Unit};
@@ -222,7 +223,7 @@ pub struct SdfArgs {
     #[arg(short, long, value_name = "OUT", required_unless_present = "plan")]
     pub output: Option<PathBuf>,
     /// Voxels along the longest side of the bounding box
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel")]
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = parse_resolution, conflicts_with = "voxel")]
     pub resolution: u32,
     /// Size of a voxel, instead of --resolution
     #[arg(long, value_name = "LEN")]
@@ -272,7 +273,7 @@ pub struct InspectArgs {
     #[arg(long)]
     pub thickness: bool,
     /// Voxels along the longest side of the bounding box, for --thickness
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel", requires = "thickness")]
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = parse_resolution, conflicts_with = "voxel", requires = "thickness")]
     pub resolution: u32,
     /// Size of a voxel, instead of --resolution
     #[arg(long, value_name = "LEN", requires = "thickness")]
@@ -332,6 +333,9 @@ pub struct ConvertArgs {
     /// How the output is written.
     #[command(flatten)]
     pub writing: OutputArgs,
+    /// Whether a result that is mostly lost is written.
+    #[command(flatten)]
+    pub keeping: KeepArgs,
     /// Flags of every verb.
     #[command(flatten)]
     pub common: CommonArgs,
@@ -392,7 +396,7 @@ pub struct SolidArgs {
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Voxels along the longest side of the bounding box
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel")]
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = parse_resolution, conflicts_with = "voxel")]
     pub resolution: u32,
     /// Size of a voxel, instead of --resolution
     #[arg(long, value_name = "LEN")]
@@ -433,9 +437,19 @@ pub struct SolidArgs {
     /// How the output is written.
     #[command(flatten)]
     pub writing: OutputArgs,
+    /// Whether a result that is mostly lost is written.
+    #[command(flatten)]
+    pub keeping: KeepArgs,
     /// Flags of every verb.
     #[command(flatten)]
     pub common: CommonArgs,
+}
+
+impl SolidArgs {
+    /// Whether a result that is mostly lost is written.
+    pub fn keeps_partial(&self) -> bool {
+        self.keeping.keep_partial || self.writing.force
+    }
 }
 
 /// How inputs are read.

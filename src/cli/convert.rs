@@ -8,7 +8,7 @@ use super::input;
 use super::output::{Target, write_verified};
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
-use super::words;
+use super::{keep, words};
 use crate::io::{Carried, Colours, Format, Loaded};
 use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
 
@@ -36,7 +36,12 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
         write_verified(&target, &input.loaded.mesh, input.loaded.colours.as_ref(), session, |read| {
             check_close(read, &input.loaded.mesh)?;
             check_colours(read, &input.loaded)?;
-            state(&read.mesh, session)
+            let after = state(&read.mesh, session)?;
+            let keeps = args.keeping.keep_partial || args.writing.force;
+            match is_mostly_lost(&before, &after) && !keeps {
+                true => Err(keep::withheld(&losses(&before, &after), Some(&args.output))),
+                false => Ok(after),
+            }
         })
     })?;
     let triangles = after.triangles;
@@ -93,6 +98,17 @@ pub(super) fn lost_colours(colours: &Colours, mesh: &TriMesh, format: Format) ->
         Carried::Roughly => Some(format!("{format} has no place for colours of this kind; they were averaged")),
         Carried::Not => Some(format!("{format} holds no colours; they are left out")),
     }
+}
+
+/// More than this share of the triangles or vertices lost by rounding is no copy of the shape any more.
+const MOST_LOST: f64 = 0.1;
+
+/// Whether the rounding to the format's numbers has lost much of the shape.
+fn is_mostly_lost(before: &Validity, after: &Validity) -> bool {
+    let vertices = |validity: &Validity| validity.vertices - validity.unused_vertices;
+    let share = |lost: usize, of: usize| lost as f64 > MOST_LOST * of as f64;
+    share(after.degenerate_triangles.saturating_sub(before.degenerate_triangles), before.triangles)
+        || share(vertices(before).saturating_sub(vertices(after)), vertices(before))
 }
 
 /// What the rounding to the format's numbers made worse.

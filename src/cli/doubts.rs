@@ -84,8 +84,15 @@ const THIN_WALLS_TOLD: f64 = 0.05;
 /// The voxel that would hold the walls, where some of them may have suffered.
 fn finer(pipeline: &Report, unit: UnitName<'_>) -> Option<String> {
     let thin = &pipeline.thin;
-    let keeps = thin.voxel_that_keeps.filter(|keeps| *keeps > 0.0 && *keeps < pipeline.voxel)?;
-    let told = thin.thin_spans as f64 > THIN_WALLS_TOLD * thin.spans as f64 && !thin.regions.is_empty();
-    let keeps = words::with_unit(&words::rounded_down(keeps), unit).replace(' ', "");
-    told.then(|| format!("--voxel {keeps} would keep 99 % of the walls"))
+    if thin.thin_spans as f64 <= THIN_WALLS_TOLD * thin.spans as f64 || thin.regions.is_empty() {
+        return None;
+    }
+    match thin.voxel_that_keeps {
+        Some(keeps) if keeps < pipeline.voxel => {
+            let keeps = words::with_unit(&words::rounded_down(keeps), unit).replace(' ', "");
+            Some(format!("--voxel {keeps} would keep 99 % of the walls"))
+        }
+        Some(_) => None,
+        None => Some("no voxel that is possible would keep 99 % of the walls: they are too thin".into()),
+    }
 }

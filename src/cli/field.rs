@@ -35,6 +35,7 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     let texts = Texts::parse(args, &files)?;
     let paths: Vec<&Path> = files.iter().map(|(_, path)| *path).collect();
     let targets = targets(args)?;
+    session.expect_frames(targets.len());
     let mut given = report
         .timed("read", |report| Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings))?;
     let of_grids = given.grids.iter().find_map(|grid| grid.file.unit);
@@ -71,13 +72,13 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     for (number, target) in targets.iter().enumerate() {
         run.frame(number, targets.len(), target, report)?;
     }
-    let broken = limits::broken(report, args.max_memory);
+    let broken = limits::beyond_memory(report, args.max_memory);
     report.warnings.extend(broken.iter().cloned());
     report.seconds = session.start.elapsed().as_secs_f64();
     report.peak_memory_bytes = super::machine::peak_memory();
     session.clear_bar();
     say(session, report, targets.len(), unit);
-    Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+    Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
 }
 
 /// The operands of the expression. Lattices in another unit than the rest are rescaled, with a line about it. The values

@@ -4,7 +4,9 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::Duration;
 
+use super::words;
 use crate::io::Unit;
+use crate::pipeline::MAX_RESOLUTION;
 
 /// A length as typed, not yet in model units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -200,6 +202,16 @@ impl Length {
         } else {
             Err(QuantityError::NotPositive { text: self.to_string() })
         }
+    }
+}
+
+/// Voxels along the longest side of a box.
+pub fn parse_resolution(text: &str) -> Result<u32, String> {
+    let most = words::count(MAX_RESOLUTION as usize);
+    match text.trim().parse::<i64>() {
+        Ok(count) if (2..=i64::from(MAX_RESOLUTION)).contains(&count) => Ok(count as u32),
+        Ok(_) => Err(format!("from 2 to {most} voxels are possible along the longest side of the model")),
+        Err(_) => Err(format!("a whole number of voxels from 2 to {most} is needed; --voxel takes a length")),
     }
 }
 

@@ -7,6 +7,7 @@ mod change;
 mod choices;
 mod compare;
 mod convert;
+mod course;
 mod csg;
 mod csg_parser;
 mod devices;
@@ -19,6 +20,7 @@ mod files;
 mod given;
 mod input;
 mod inspect;
+mod keep;
 mod length;
 mod limits;
 mod machine;
@@ -213,7 +215,7 @@ impl<'a> Job<'a> {
 
 /// Runs one verb within a session, writes its report, gives all files their names, and prints what there is to say.
 fn run(mut job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<Exit, Failure>) -> Exit {
-    let ready = job.check().and_then(|()| Session::new(job.common, job.max_memory));
+    let ready = job.check().and_then(|()| Session::new(job.verb, job.common, job.max_memory));
     let session = match ready {
         Ok(session) => session,
         Err(failure) => {

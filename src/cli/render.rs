@@ -62,9 +62,9 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
         unit: None,
         validity: None,
     });
-    let broken = limits::broken(report, args.max_memory);
+    let broken = limits::beyond_memory(report, args.max_memory);
     report.warnings.extend(broken.iter().cloned());
-    Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+    Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
 }
 
 /// What is drawn.

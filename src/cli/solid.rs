@@ -13,7 +13,7 @@ use super::length::{Scale, Simplify};
 use super::output::{self, Target, write_verified};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
-use super::{backend, limits, machine, negative, summary, words};
+use super::{backend, keep, limits, machine, negative, summary, words};
 use crate::fit::{FitOptions, rounded};
 use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
 use crate::ldi::Expression;
@@ -204,24 +204,31 @@ fn make(
     drop(meshes);
     report.stages.extend(outcome.report.stages.iter().cloned());
     report.warnings.extend(outcome.report.warnings.iter().cloned());
-    if let Some(path) = &args.map {
+    report.pipeline = Some(outcome.report.clone());
+    let lost = limits::lost(report);
+    let writes = target.is_some() || args.map.is_some();
+    let withheld = writes && !lost.is_empty() && !args.keeps_partial();
+    if let Some(path) = args.map.as_ref().filter(|_| !withheld) {
         report.timed("map", |_| write_map(path, &outcome, &canal_of, session))?;
     }
-    report.pipeline = Some(outcome.report.clone());
-    if let Some(target) = target {
+    if let Some(target) = target.filter(|_| !withheld) {
         let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
         let colours = pipeline::carry_colours(&outcome, &operands);
         write(&outcome.mesh, colours.as_ref(), target, session, report)?;
     }
-    let broken = limits::broken(report, args.max_memory);
-    report.warnings.extend(broken.iter().cloned());
+    let beyond = limits::beyond_memory(report, args.max_memory);
+    report.warnings.extend(beyond.iter().chain(lost.iter().filter(|_| !withheld)).cloned());
     report.seconds = session.start.elapsed().as_secs_f64();
     report.peak_memory_bytes = super::machine::peak_memory();
     session.clear_bar();
     let name = unit.map(|unit| unit.to_string());
     summary::say(session, report, name.as_deref());
     change::list(job.change, report, &args.common, name.as_deref())?;
-    Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+    if withheld {
+        session.speak();
+        return Err(keep::withheld(&lost, args.output.as_deref()));
+    }
+    Ok(if beyond.is_none() && lost.is_empty() { Exit::Done } else { Exit::Limit })
 }
 
 /// Writes the result and judges the written file.

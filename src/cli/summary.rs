@@ -1,5 +1,6 @@
 //! What a run says to a person: a few aligned lines, made from the report.
 
+use super::course::in_words;
 use super::doubts;
 use super::input::Input;
 use super::report::{InputEntry, RunReport};
@@ -77,7 +78,7 @@ pub fn time(report: &RunReport) -> Row {
 
 /// The seconds of each stage.
 pub fn stages(report: &RunReport) -> impl Iterator<Item = Row> {
-    report.stages.iter().map(|stage| ("stage", format!("{:8.3} s  {}", stage.seconds, stage.stage)))
+    report.stages.iter().map(|stage| ("stage", format!("{:8.3} s  {}", stage.seconds, in_words(stage.stage))))
 }
 
 fn described(input: &InputEntry) -> String {
