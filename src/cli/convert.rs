@@ -31,10 +31,11 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     }
     let lost = |colours| lost_colours(colours, &input.loaded.mesh, target.options.format);
     report.warnings.extend(input.loaded.colours.as_ref().and_then(lost));
+    report.warnings.extend(target.unit_note());
     let before = state(&input.loaded.mesh, session)?;
     let (entry, after) = report.timed("write and verify", |_| {
         write_verified(&target, &input.loaded.mesh, input.loaded.colours.as_ref(), session, |read| {
-            check_close(read, &input.loaded.mesh)?;
+            check_close(read, &input.loaded.mesh, target.options.factor())?;
             check_colours(read, &input.loaded)?;
             let after = state(&read.mesh, session)?;
             let keeps = args.keeping.keep_partial || args.writing.force;
@@ -55,7 +56,7 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
         args.output.display(),
         words::plural(triangles, "triangle"),
         target.options.format,
-        unit.map_or(String::new(), |unit| format!(", in {unit}"))
+        target.options.unit_in_file().map_or(String::new(), |unit| format!(", in {unit}"))
     ));
     Ok(if lost.is_empty() { Exit::Done } else { Exit::Limit })
 }
@@ -66,12 +67,12 @@ fn state(mesh: &TriMesh, session: &Session) -> Result<Validity, Failure> {
     Ok(validate(mesh, &options, &session.progress)?)
 }
 
-/// Whether the file holds the mesh, up to the rounding of its numbers.
-fn check_close(read: &Loaded, mesh: &TriMesh) -> Result<(), Failure> {
+/// Whether the file holds the mesh, times a factor, up to the rounding of its numbers.
+fn check_close(read: &Loaded, mesh: &TriMesh, factor: f64) -> Result<(), Failure> {
     let close = |a: glam::DVec3, b: glam::DVec3| (a - b).abs().max_element() <= 1e-6 * a.abs().max_element();
     let same = read.mesh.triangles.len() == mesh.triangles.len()
         && (0..mesh.triangles.len()).all(|t| {
-            let (a, b) = (mesh.corners(t), read.mesh.corners(t));
+            let (a, b) = (mesh.corners(t).map(|p| p * factor), read.mesh.corners(t));
             (0..3).all(|i| close(a[i], b[i]))
         });
     if same { Ok(()) } else { Err(Failure::internal("the file does not hold what was written to it; it was removed")) }

@@ -38,8 +38,7 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     session.expect_frames(targets.len());
     let mut given = report
         .timed("read", |report| Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings))?;
-    let of_grids = given.grids.iter().find_map(|grid| grid.file.unit);
-    let unit = input::common_unit(&mut given.meshes, &args.reading, &mut report.warnings).or(of_grids);
+    let unit = given.common_unit(&args.reading, &mut report.warnings);
     given.describe(report);
     for (entry, (name, _)) in report.inputs.iter_mut().zip(&files) {
         entry.name = Some(name.to_string());
@@ -53,7 +52,7 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
         }
         Ok::<(), Failure>(())
     })?;
-    let operands = operands(&mut given, unit, args.max_memory, &mut report.warnings)?;
+    let operands = operands(&mut given, args.max_memory)?;
     let held: u64 = operands.iter().map(Operand::memory).sum();
     let bounds = operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
     let scale = scale(args, unit, bounds.as_ref())?;
@@ -81,14 +80,8 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
 }
 
-/// The operands of the expression. Lattices in another unit than the rest are rescaled, with a line about it. The values
-/// of the files go over to the operands.
-fn operands(
-    given: &mut Given,
-    unit: Option<Unit>,
-    max_memory: Option<u64>,
-    notes: &mut Vec<String>,
-) -> Result<Vec<Operand>, Failure> {
+/// The operands of the expression, in one unit. The values of the files go over to the operands.
+fn operands(given: &mut Given, max_memory: Option<u64>) -> Result<Vec<Operand>, Failure> {
     let mut operands = Vec::new();
     let mut held = 0;
     for which in given.order.clone() {
@@ -101,16 +94,7 @@ fn operands(
                         .hint("for the lattices that are read; a larger --max-memory"));
                 }
                 let grid = &mut given.grids[n];
-                let factor = match (grid.file.unit, unit) {
-                    (Some(own), Some(unit)) if own != unit => {
-                        let factor = own.metres() / unit.metres();
-                        let path = &grid.entry.path;
-                        notes.push(format!("{path} is in {own}; it was rescaled to {unit} (times {factor})"));
-                        factor
-                    }
-                    _ => 1.0,
-                };
-                let sampled = Sampled::of_file(&grid.file, factor);
+                let sampled = Sampled::of_file(&grid.file, grid.factor);
                 grid.file.values = GridValues::Dense(Vec::new());
                 Operand::Grid(Arc::new(sampled))
             }

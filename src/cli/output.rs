@@ -10,6 +10,7 @@ use super::exit::{Exit, Failure};
 use super::input::{hex, is_stream, plain_reason, sha256};
 use super::report::OutputEntry;
 use super::session::{Drafted, Session};
+use super::words;
 use crate::io::{
     self, Colours, DistanceSamples, Format, GridFormat, Loaded, Unit, WriteError, WriteOptions, WriteProblem,
 };
@@ -43,6 +44,30 @@ impl Target {
     /// The unit of the mesh that will be written.
     pub fn set_unit(&mut self, unit: Option<Unit>) {
         self.options.unit = unit;
+    }
+
+    /// What a user should know of the unit in the file.
+    pub fn unit_note(&self) -> Option<String> {
+        let format = self.options.format;
+        match (format, self.options.unit) {
+            (Format::Glb | Format::Gltf, None) => Some(format!(
+                "{format} is in metres, and the unit of the model is not known: its numbers were written as they are, so 1 reads \
+                 as 1 m; --unit mm, for example, says what they are"
+            )),
+            (Format::Glb | Format::Gltf, Some(unit)) if unit != Unit::Metre => {
+                let factor = words::factor(self.options.factor());
+                Some(format!("{format} is in metres: lengths in {unit} were written times {factor}"))
+            }
+            (Format::ThreeMf, None) => Some(
+                "3MF states a unit, and that of the model is not known: its numbers were written as they are and read as millimetres; \
+                 --unit says otherwise"
+                    .into(),
+            ),
+            (Format::Stl | Format::Obj | Format::Ply | Format::Off, Some(unit)) if unit != Unit::Millimetre => Some(format!(
+                "{format} has no place for a unit: its numbers are in {unit}, and most programs will take them for millimetres"
+            )),
+            _ => None,
+        }
     }
 }
 
@@ -229,7 +254,7 @@ fn entry(target: &Target, bytes: &[u8]) -> OutputEntry {
         format: target.options.format.to_string(),
         bytes: bytes.len() as u64,
         sha256: sha256(bytes),
-        unit: target.options.unit.map(|unit| unit.to_string()),
+        unit: target.options.unit_in_file().map(|unit| unit.to_string()),
         validity: None,
     }
 }

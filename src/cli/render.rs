@@ -22,8 +22,8 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
     let paths: Vec<&Path> = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
     let mut inputs = report
         .timed("read", |report| Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings))?;
-    // Two meshes share one camera, so they must share one unit.
-    input::common_unit(&mut inputs.meshes, &args.reading, &mut report.warnings);
+    // What shares one camera, or one plane, must share one unit.
+    inputs.common_unit(&args.reading, &mut report.warnings);
     inputs.describe(report);
     let inputs = Inputs(inputs);
     let options = options(args);
@@ -97,7 +97,7 @@ impl Inputs {
         };
         let fields: Vec<Field<'_>> = sliced.iter().map(field).collect::<Result<_, _>>()?;
         let size = [options.width, options.height];
-        let slices = slice::draw(&fields, choice, size, session, &mut report.warnings)?;
+        let slices = slice::draw(&fields, choice, size, session)?;
         let mut slices = slices.into_iter();
         let mut images = Vec::new();
         for which in &self.0.order {

@@ -245,8 +245,12 @@ pub(super) fn write(
     if let Some(moved) = moved {
         report.warnings.push(rounding(moved, target.options.format));
     }
+    // Of several frames it is said once.
+    let of_unit = target.unit_note().filter(|note| !report.warnings.contains(note));
+    report.warnings.extend(of_unit);
+    let factor = target.options.factor();
     let (entry, validity) = report.timed("write and verify", |_| {
-        write_verified(target, &stored, colours, session, |read| judge(read, &stored, moved, session))
+        write_verified(target, &stored, colours, session, |read| judge(read, (&stored, factor), moved, session))
     })?;
     report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
     Ok(())
@@ -298,10 +302,15 @@ fn write_map(path: &Path, outcome: &Outcome, canal_of: &[u32], session: &Session
     output::write_side(path, &bytes, session)
 }
 
-/// Whether the file as read back holds the mesh that was made, and keeps the program's promise. `moved`: how far rounding to the
-/// numbers of the format moved vertices.
-fn judge(read: &Loaded, made: &TriMesh, moved: Option<f64>, session: &Session) -> Result<Validity, Failure> {
-    check_same(&read.mesh, made)?;
+/// Whether the file as read back holds the mesh that was made, times a factor, and keeps the program's promise. `moved`: how far
+/// rounding to the numbers of the format moved vertices.
+fn judge(
+    read: &Loaded,
+    (made, factor): (&TriMesh, f64),
+    moved: Option<f64>,
+    session: &Session,
+) -> Result<Validity, Failure> {
+    check_same(&read.mesh, made, factor)?;
     let options = ValidateOptions { self_intersections: true, weld: input::is_soup_format(read.format) };
     let validity = validate(&read.mesh, &options, &session.progress)?;
     if validity.is_valid() {
@@ -320,9 +329,9 @@ fn judge(read: &Loaded, made: &TriMesh, moved: Option<f64>, session: &Session) -
     })
 }
 
-/// Whether two meshes have the same triangles, in the same order, at exactly the same places.
-fn check_same(read: &TriMesh, made: &TriMesh) -> Result<(), Failure> {
+/// Whether two meshes have the same triangles, in the same order, at exactly the same places, times a factor.
+fn check_same(read: &TriMesh, made: &TriMesh, factor: f64) -> Result<(), Failure> {
     let same = read.triangles.len() == made.triangles.len()
-        && (0..made.triangles.len()).all(|t| read.corners(t) == made.corners(t));
+        && (0..made.triangles.len()).all(|t| read.corners(t) == made.corners(t).map(|p| p * factor));
     if same { Ok(()) } else { Err(Failure::internal("the file does not hold what was written to it; it was removed")) }
 }

@@ -1,6 +1,6 @@
 //! Numbers and quantities in words.
 
-pub(crate) use crate::digits::{count, number, rounded_down, rounded_up};
+pub(crate) use crate::digits::{count, factor, number, rounded_down, rounded_up};
 
 /// The name of the model's unit, where it has one.
 pub type UnitName<'a> = Option<&'a str>;
@@ -116,6 +116,7 @@ mod tests {
         assert_eq!(rounded_down(0.0999), "0.099");
         assert_eq!(rounded_down(0.3), "0.3");
         assert_eq!(rounded_up(1.234e-12), "1.3e-12");
+        assert_eq!([25.4, 1.0 / 25.4, 1e-3].map(factor), ["25.4", "0.0393701", "0.001"]);
     }
 
     #[test]
