@@ -3,21 +3,30 @@
 use serde_json::json;
 
 use super::args::ConvertArgs;
+use super::choices::AnyFormat;
 use super::exit::{Exit, Failure};
+use super::given::Given;
 use super::input;
 use super::output::{Target, write_verified};
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
-use super::{keep, words};
+use super::{grids, keep, words};
 use crate::io::{Carried, Colours, Format, Loaded};
 use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
 
 /// Reads one file and writes it again.
 pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
+    let mut given = report
+        .timed("read", |report| Given::read(&[&args.input], &args.reading, None, session, &mut report.warnings))?;
+    let unit = given.common_unit(&args.reading, &mut report.warnings);
+    if !given.grids.is_empty() {
+        return grids::convert(args, &given, unit, session, report);
+    }
+    let inputs = given.meshes;
+    if let (None, Some(AnyFormat::Grid(_))) = (args.writing.out_format, AnyFormat::from_path(&args.output)) {
+        return Err(grids::no_field(&input::label(&args.input), &args.output));
+    }
     let mut target = Target::new(&args.output, &args.writing)?;
-    let mut inputs =
-        report.timed("read", |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
-    let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     target.set_unit(unit);
     report.options = json!({
         "unit": unit.map(|unit| unit.to_string()),
@@ -40,7 +49,7 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
             let after = state(&read.mesh, session)?;
             let keeps = args.keeping.keep_partial || args.writing.force;
             match is_mostly_lost(&before, &after) && !keeps {
-                true => Err(keep::withheld(&losses(&before, &after), Some(&args.output))),
+                true => Err(keep::withheld(&losses(&before, &after), Some(&args.output), "obj, ply, off and 3mf keep all digits")),
                 false => Ok(after),
             }
         })

@@ -1,5 +1,6 @@
 //! What a lattice may have harmed, in words: bodies that changed, and walls and gaps that it does not hold.
 
+use super::report::RunReport;
 use super::summary::Row;
 use super::words::{self, UnitName};
 use crate::pipeline::{LostBody, Report, ThinRegion, Topology, TopologyReport};
@@ -75,6 +76,19 @@ fn thin_places(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
     }
     rows.extend(finer(pipeline, unit));
     rows
+}
+
+/// What may do better than a result that is mostly lost; nothing that cannot be.
+pub fn better(report: &RunReport, unit: UnitName<'_>) -> String {
+    let pipeline = report.pipeline.as_ref();
+    let finer = pipeline.and_then(|p| p.thin.voxel_that_keeps.filter(|keeps| *keeps < p.voxel));
+    match finer {
+        Some(voxel) => {
+            let voxel = words::with_unit(&words::rounded_up(voxel), unit).replace(' ', "");
+            format!("--voxel {voxel} would keep more of it")
+        }
+        None => "`meshwright inspect` says what is wrong with the input, and `render` shows it".into(),
+    }
 }
 
 /// More than this share of walls under two voxels is worth a smaller voxel: rays that graze edges and

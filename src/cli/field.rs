@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde_json::json;
 
+use super::choices::AnyFormat;
 use super::csg::{explain, named_files};
 use super::exit::{Asked, Exit, Failure};
 use super::field_args::FieldArgs;
@@ -17,11 +18,11 @@ use super::report::RunReport;
 use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
-use super::{limits, machine, sdf, solid};
+use super::{limits, machine, output, sdf, solid};
 use crate::field::Sampled;
 use crate::field::language::{self, LanguageError, Node, Value};
 use crate::fit::FitOptions;
-use crate::io::{Colours, Format, GridFormat, GridValues, Unit, WriteOptions};
+use crate::io::{Colours, GridFormat, GridValues, Unit, WriteOptions};
 use crate::mesh::Bounds;
 use crate::picture::ramp_colour;
 use crate::pipeline::{self, Built, FieldBand, FieldBuilder, FieldReport, Operand, Options, VoxelSize};
@@ -184,7 +185,14 @@ fn targets(args: &FieldArgs) -> Result<Vec<Place>, Failure> {
     }
     let place = |number: u32| {
         let path = frame_path(args, number, frames);
-        match GridFormat::from_path(&path).filter(|_| args.writing.out_format.is_none()) {
+        let of_grid = match args.writing.out_format.or_else(|| AnyFormat::from_path(&path)) {
+            Some(AnyFormat::Grid(format)) => {
+                output::check_extension(&path, format.name())?;
+                Some(format)
+            }
+            _ => None,
+        };
+        match of_grid {
             Some(_) if args.paint.is_some() => {
                 Err(Failure::usage("--paint colours the vertices of a mesh, and a lattice has none")
                     .hint("the values themselves: the expression of --paint in the place of EXPR"))
@@ -197,7 +205,7 @@ fn targets(args: &FieldArgs) -> Result<Vec<Place>, Failure> {
                     .hint("a name after -o that ends in .vti, .nrrd, .npy or .vdb"))
             }
             Some(format) => Ok(Place::Grid(path, format)),
-            None if args.writing.out_format.is_none() && Format::from_path(&path).is_none() && !is_stream(&path) => {
+            None if args.writing.out_format.is_none() && AnyFormat::from_path(&path).is_none() && !is_stream(&path) => {
                 Err(Failure::usage(format!("the name {} does not tell its format", path.display())).hint(
                     "end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or for a lattice in .vti, .nrrd, .npy or .vdb",
                 ))

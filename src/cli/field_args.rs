@@ -25,7 +25,7 @@ pub struct FieldArgs {
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = parse_resolution, conflicts_with = "voxel")]
     pub resolution: u32,
     /// Size of a voxel, instead of --resolution
-    #[arg(long, value_name = "LEN")]
+    #[arg(long, value_name = "LEN", allow_hyphen_values = true)]
     pub voxel: Option<Length>,
     /// How far from zero a lattice has the values, or `full` for all of them [default: 4h, and full for what is no shape]
     #[arg(long, value_name = "LEN|full")]

@@ -93,11 +93,14 @@ pub fn mesh_of(
     let label = label(path);
     let stream = is_stream(path);
     let name = (!stream).then_some(path);
-    let loaded = io::read_bytes(bytes, args.in_format, name).map_err(|e| unreadable(&label, stream, args, &e))?;
+    let mut loaded = io::read_bytes(bytes, args.in_format, name).map_err(|e| unreadable(&label, stream, args, &e))?;
     if loaded.mesh.triangles.is_empty() {
         return Err(Failure::input(format!("{label}: the file has no triangles")));
     }
     session.progress.check()?;
+    let misnamed = name.and_then(Format::from_path).filter(|named| args.in_format.is_none() && *named != loaded.format);
+    let misnamed = misnamed.map(|named| format!("named as {named}, and read as {}, which it is", loaded.format));
+    loaded.warnings.extend(misnamed);
     notes.extend(loaded.warnings.iter().map(|warning| format!("{label}: {warning}")));
     let entries = |parts: &[Part]| -> Vec<PartEntry> {
         parts.iter().map(|part| PartEntry { name: part.name.clone(), triangles: part.triangles.len() }).collect()

@@ -123,6 +123,7 @@ pub enum QuantityError {
 
 const A_LENGTH: &str =
     "a length such as 0.4mm, 1in, 1% (of the bounding box diagonal), 2h (voxels) or 0.4 (in the file's units)";
+const A_POINT: &str = "a length: decimals are written with a point, such as 1.5mm";
 const A_SIZE: &str = "a size such as 500M, 2G or 1500000";
 const A_DURATION: &str = "a duration such as 30s, 5m or 1h";
 
@@ -139,7 +140,10 @@ impl FromStr for Length {
     type Err = QuantityError;
 
     fn from_str(text: &str) -> Result<Self, QuantityError> {
-        let malformed = || QuantityError::Malformed { text: text.into(), wanted: A_LENGTH };
+        let is_a_length = |text: &str| split(text).is_some_and(|(_, s)| matches!(s, "" | "h" | "%") || s.parse::<Unit>().is_ok());
+        let comma = text.contains(',') && is_a_length(&text.replace(',', "."));
+        let wanted = if comma { A_POINT } else { A_LENGTH };
+        let malformed = || QuantityError::Malformed { text: text.into(), wanted };
         let (value, suffix) = split(text).ok_or_else(malformed)?;
         if value <= 0.0 {
             return Err(QuantityError::NotPositive { text: text.into() });
@@ -203,6 +207,16 @@ impl Length {
             Err(QuantityError::NotPositive { text: self.to_string() })
         }
     }
+}
+
+/// The radius of a ball.
+pub fn parse_radius(text: &str) -> Result<Length, String> {
+    text.parse().map_err(|error| match error {
+        QuantityError::NotPositive { text } => {
+            format!("`{text}` is not above zero, as a radius must be: `dilate` grows by it, `erode` shrinks by it")
+        }
+        error => error.to_string(),
+    })
 }
 
 /// Voxels along the longest side of a box.

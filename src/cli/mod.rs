@@ -18,12 +18,14 @@ mod field;
 mod field_args;
 mod files;
 mod given;
+mod grids;
 mod input;
 mod inspect;
 mod keep;
 mod length;
 mod limits;
 mod machine;
+mod misuse;
 mod morphology;
 mod negative;
 mod output;
@@ -60,10 +62,17 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version also come this way; there is nobody to tell if printing fails.
-            let _ = error.print();
+            match misuse::explain(&error, &std::env::args_os().skip(1).collect::<Vec<_>>()).filter(|_| error.use_stderr()) {
+                Some(failure) => print_failure(&failure),
+                None => drop(error.print()),
+            }
             return ExitCode::from(if error.use_stderr() { Exit::Usage } else { Exit::Done }.code());
         }
     };
+    // The others never load a graphics driver.
+    if !matches!(cli.verb, Verb::Inspect(_) | Verb::Compare(_) | Verb::Convert(_) | Verb::Render(_)) {
+        machine::quiet_drivers();
+    }
     let no_bug = Arc::new(AtomicBool::new(true));
     machine::tame_signals(no_bug.clone());
     std::panic::set_hook(Box::new(move |panic| {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 use super::args::OutputArgs;
+use super::choices::AnyFormat;
 use super::exit::{Exit, Failure};
 use super::input::{hex, is_stream, plain_reason, sha256};
 use super::report::OutputEntry;
@@ -27,13 +28,20 @@ pub struct Target {
 impl Target {
     /// What can be known of the encoding before the work begins.
     pub fn new(path: &Path, args: &OutputArgs) -> Result<Self, Failure> {
-        let format = match (args.out_format, Format::from_path(path)) {
-            (Some(format), _) | (None, Some(format)) => format,
-            (None, None) if is_stream(path) => {
+        let format = match args.out_format.or_else(|| AnyFormat::from_path(path)) {
+            Some(AnyFormat::Mesh(format)) => {
+                check_extension(path, format.name())?;
+                format
+            }
+            Some(AnyFormat::Grid(format)) => {
+                return Err(Failure::usage(format!("{format} holds values over a lattice, and the result is a mesh"))
+                    .hint("stl, obj, ply, off, glb, gltf and 3mf hold meshes; `sdf` and `field` make lattices"));
+            }
+            None if is_stream(path) => {
                 return Err(Failure::usage("standard output has no name that tells its format")
                     .hint("--out-format says it, for example --out-format stl"));
             }
-            (None, None) => {
+            None => {
                 return Err(Failure::usage(format!("the name {} does not tell its format", path.display()))
                     .hint("end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or give --out-format"));
             }
@@ -69,6 +77,24 @@ impl Target {
             _ => None,
         }
     }
+}
+
+/// Extensions that say what is in a file, beside those of the formats for meshes and lattices.
+const KNOWN: [&str; 28] = [
+    "png", "jpg", "jpeg", "gif", "bmp", "tif", "tiff", "webp", "svg", "pdf", "json", "html", "xml", "zip", "step", "stp", "iges",
+    "igs", "dxf", "dwg", "fbx", "dae", "3ds", "blend", "amf", "x3d", "wrl", "usd",
+];
+
+/// Refuses a name that says something else than what is written to it.
+pub fn check_extension(path: &Path, format: &str) -> Result<(), Failure> {
+    let extension = path.extension().map_or(String::new(), |extension| extension.to_string_lossy().to_lowercase());
+    let says_something = AnyFormat::from_path(path).is_some() || KNOWN.contains(&extension.as_str());
+    if is_direct(path) || extension == format || !says_something {
+        return Ok(());
+    }
+    let name = path.display();
+    Err(Failure::usage(format!("{name} is named as {extension}, and {format} would be written to it"))
+        .hint(format!("a name that ends in .{format}, such as {}", path.with_extension(format).display())))
 }
 
 /// Whether what is written to `path` goes there at once: a stream, a pipe, a device.

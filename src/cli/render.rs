@@ -19,6 +19,7 @@ use crate::picture::{EdgeDrawing, Image, Painted, RenderOptions, View, render, r
 
 /// Draws one mesh or slice, or two on one sheet.
 pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
+    super::output::check_extension(&args.output, "png")?;
     let paths: Vec<&Path> = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
     let mut inputs = report
         .timed("read", |report| Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings))?;

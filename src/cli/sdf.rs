@@ -62,7 +62,10 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
 fn format(args: &SdfArgs) -> Result<Option<GridFormat>, Failure> {
     let Some(path) = args.output.as_deref() else { return Ok(None) };
     let format = match (args.out_format, GridFormat::from_path(path)) {
-        (Some(format), _) | (None, Some(format)) => format,
+        (Some(format), _) | (None, Some(format)) => {
+            output::check_extension(path, format.name())?;
+            format
+        }
         (None, None) if is_stream(path) => {
             return Err(Failure::usage("standard output has no name that tells its format")
                 .hint("--out-format says it, for example --out-format nrrd"));

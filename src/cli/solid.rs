@@ -13,7 +13,7 @@ use super::length::{Scale, Simplify};
 use super::output::{self, Target, write_verified};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
-use super::{backend, keep, limits, machine, negative, summary, words};
+use super::{backend, doubts, keep, limits, machine, negative, summary, words};
 use crate::fit::{FitOptions, rounded};
 use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
 use crate::ldi::Expression;
@@ -226,7 +226,7 @@ fn make(
     change::list(job.change, report, &args.common, name.as_deref())?;
     if withheld {
         session.speak();
-        return Err(keep::withheld(&lost, args.output.as_deref()));
+        return Err(keep::withheld(&lost, args.output.as_deref(), &doubts::better(report, name.as_deref())));
     }
     Ok(if beyond.is_none() && lost.is_empty() { Exit::Done } else { Exit::Limit })
 }

@@ -51,7 +51,7 @@ pub use colour::{Carried, Colours, Rgba};
 pub use error::{Place, ReadError, ReadProblem, WriteError, WriteProblem};
 pub use format::{Format, UnknownFormat};
 pub use grids::{
-    BLOCK_SIDE, BLOCK_VOXELS, Block, BlockValues, DistanceSamples, GridFile, GridFormat, GridReadError,
+    BLOCK_SIDE, BLOCK_VOXELS, Block, BlockValues, DistanceSamples, GridFile, GridFormat, GridMeasures, GridReadError,
     GridReadProblem, GridValues, SampleBlocks, SparseValues, Tile, UnknownGridFormat, encode_grid, read_grid,
     read_grid_bytes, read_grid_within, write_grid,
 };
