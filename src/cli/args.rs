@@ -7,10 +7,11 @@ use clap::{Args, Parser, Subcommand};
 
 use super::backend::BackendChoice;
 use super::change::RemoveChoice;
-use super::choices::{Defect, EdgeChoice, MethodChoice, OrientChoice, SideChoice, SignChoice, VoteChoice};
+use super::choices::{AnyFormat, Defect, EdgeChoice, MethodChoice, OrientChoice, SideChoice, SignChoice, VoteChoice};
 use super::devices::DevicesArgs;
 use super::field_args::{FieldArgs, field_help};
-use super::length::{BandChoice, Length, Simplify, parse_duration, parse_size};
+use super::keep::KeepArgs;
+use super::length::{BandChoice, Length, Simplify, parse_duration, parse_radius, parse_resolution, parse_size};
 use super::render::{ViewChoice, parse_view};
 use super::slice::SliceChoice;
 use super::volume::Volume;
@@ -44,25 +45,25 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     /// Make one closed, oriented solid surface of a broken mesh
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = EXIT_CODES, aliases = ["fix", "heal"])]
     Repair(RepairArgs),
     /// Everything inside at least one of the meshes
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = EXIT_CODES, aliases = ["add", "join", "merge", "combine"])]
     Union(BooleanArgs),
     /// Everything inside all of the meshes
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = EXIT_CODES, aliases = ["intersect", "common"])]
     Intersection(BooleanArgs),
     /// The first mesh without all the others
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = EXIT_CODES, aliases = ["subtract", "minus"])]
     Difference(BooleanArgs),
     /// Any boolean expression, such as 'a - (b | c) & d'
     #[command(after_help = CSG_HELP)]
     Csg(CsgArgs),
     /// Grow a solid by a length on all sides
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = EXIT_CODES, aliases = ["grow", "inflate"])]
     Dilate(GrowArgs),
     /// Shrink a solid by a length on all sides
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = EXIT_CODES, alias = "shrink")]
     Erode(GrowArgs),
     /// Take away what a ball inside cannot reach: whiskers, fins, thin walls
     #[command(after_help = EXIT_CODES)]
@@ -77,22 +78,22 @@ pub enum Verb {
     #[command(after_help = EXIT_CODES)]
     Thicken(ThickenArgs),
     /// Signed distance to a mesh over a lattice
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = EXIT_CODES, alias = "distance")]
     Sdf(SdfArgs),
     /// Combine, filter and morph shapes through their distance fields, by an expression
     #[command(after_help = field_help())]
     Field(FieldArgs),
     /// Say what is in a mesh file and what is wrong with it
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = EXIT_CODES, aliases = ["info", "check"])]
     Inspect(InspectArgs),
     /// Measure how far two meshes are from each other
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = EXIT_CODES, alias = "diff")]
     Compare(CompareArgs),
-    /// Write the same triangles in another format; nothing is repaired
+    /// Write the same triangles, or the same values of a grid, in another format; nothing is repaired
     #[command(after_help = EXIT_CODES)]
     Convert(ConvertArgs),
     /// Draw a mesh or a slice of a grid, or two of these for comparison, as a PNG picture
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = EXIT_CODES, aliases = ["view", "draw"])]
     Render(RenderArgs),
     /// List the graphics adapters, and what --backend would take
     #[command(after_help = EXIT_CODES)]
@@ -128,7 +129,7 @@ pub struct MorphologyArgs {
     #[arg(value_name = "IN")]
     pub input: PathBuf,
     /// Radius of the ball (0.4mm, 2h for two voxels, 1% of the diagonal)
-    #[arg(short, long, value_name = "LEN")]
+    #[arg(short, long, value_name = "LEN", value_parser = parse_radius, allow_hyphen_values = true)]
     pub radius: Length,
     /// Flags of the pipeline and its output.
     #[command(flatten)]
@@ -153,7 +154,7 @@ pub struct CanalArgs {
     #[arg(value_name = "IN")]
     pub input: PathBuf,
     /// Canals that a ball of this diameter does not pass are listed, by number
-    #[arg(short = 'd', long, value_name = "LEN")]
+    #[arg(short = 'd', long, value_name = "LEN", allow_hyphen_values = true)]
     pub max_diameter: Length,
     /// Fill these canals and write the rest as it was: `all`, or numbers such as 1,3
     #[arg(long, value_name = "all|N,N", num_args = 0..=1, default_missing_value = "all")]
@@ -170,7 +171,7 @@ pub struct ThickenArgs {
     #[arg(value_name = "IN")]
     pub input: PathBuf,
     /// The least thickness of walls, at least four voxels
-    #[arg(short, long, value_name = "LEN")]
+    #[arg(short, long, value_name = "LEN", allow_hyphen_values = true)]
     pub min: Length,
     /// Where open sheets grow
     #[arg(long, value_enum, default_value_t = SideChoice::Both)]
@@ -223,10 +224,10 @@ pub struct SdfArgs {
     #[arg(short, long, value_name = "OUT", required_unless_present = "plan")]
     pub output: Option<PathBuf>,
     /// Voxels along the longest side of the bounding box
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel")]
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = parse_resolution, conflicts_with = "voxel")]
     pub resolution: u32,
     /// Size of a voxel, instead of --resolution
-    #[arg(long, value_name = "LEN")]
+    #[arg(long, value_name = "LEN", allow_hyphen_values = true)]
     pub voxel: Option<Length>,
     /// How far from the surface distances are found, or `full` for everywhere; the lattice reaches as far
     #[arg(long, value_name = "LEN|full", default_value = "4h")]
@@ -266,17 +267,17 @@ pub struct SdfArgs {
 /// `inspect IN`.
 #[derive(Debug, Args)]
 pub struct InspectArgs {
-    /// The mesh to look at
+    /// The mesh, or the grid (VTI, NRRD, NPY, VDB), to look at
     #[arg(value_name = "IN")]
     pub input: PathBuf,
     /// Also measure the thickness of walls and gaps along the rays of a lattice
     #[arg(long)]
     pub thickness: bool,
     /// Voxels along the longest side of the bounding box, for --thickness
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel", requires = "thickness")]
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = parse_resolution, conflicts_with = "voxel", requires = "thickness")]
     pub resolution: u32,
     /// Size of a voxel, instead of --resolution
-    #[arg(long, value_name = "LEN", requires = "thickness")]
+    #[arg(long, value_name = "LEN", requires = "thickness", allow_hyphen_values = true)]
     pub voxel: Option<Length>,
     /// Exit with 3 when the mesh has one of these defects
     #[arg(long, value_name = "DEFECT", value_delimiter = ',', value_enum)]
@@ -321,7 +322,7 @@ pub struct CompareArgs {
 /// `convert IN -o OUT`.
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// The mesh to write again
+    /// The mesh, or the grid (VTI, NRRD, NPY, VDB), to write again
     #[arg(value_name = "IN")]
     pub input: PathBuf,
     /// Where to write it
@@ -333,6 +334,9 @@ pub struct ConvertArgs {
     /// How the output is written.
     #[command(flatten)]
     pub writing: OutputArgs,
+    /// Whether a result that is mostly lost is written.
+    #[command(flatten)]
+    pub keeping: KeepArgs,
     /// Flags of every verb.
     #[command(flatten)]
     pub common: CommonArgs,
@@ -393,10 +397,10 @@ pub struct SolidArgs {
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// Voxels along the longest side of the bounding box
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel")]
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = parse_resolution, conflicts_with = "voxel")]
     pub resolution: u32,
     /// Size of a voxel, instead of --resolution
-    #[arg(long, value_name = "LEN")]
+    #[arg(long, value_name = "LEN", allow_hyphen_values = true)]
     pub voxel: Option<Length>,
     /// Which side of the triangles is outside: find out, or trust the file
     #[arg(long, value_enum, default_value_t = OrientChoice::Auto)]
@@ -437,9 +441,19 @@ pub struct SolidArgs {
     /// How the output is written.
     #[command(flatten)]
     pub writing: OutputArgs,
+    /// Whether a result that is mostly lost is written.
+    #[command(flatten)]
+    pub keeping: KeepArgs,
     /// Flags of every verb.
     #[command(flatten)]
     pub common: CommonArgs,
+}
+
+impl SolidArgs {
+    /// Whether a result that is mostly lost is written.
+    pub fn keeps_partial(&self) -> bool {
+        self.keeping.keep_partial || self.writing.force
+    }
 }
 
 /// How inputs are read.
@@ -458,7 +472,7 @@ pub struct InputArgs {
 pub struct OutputArgs {
     /// Format of the output, when its name should not decide
     #[arg(long, value_name = "FORMAT")]
-    pub out_format: Option<Format>,
+    pub out_format: Option<AnyFormat>,
     /// Text instead of binary, where the format has both (STL, PLY)
     #[arg(long)]
     pub ascii: bool,

@@ -87,10 +87,7 @@ pub(super) fn check_map(map: &Path) -> Result<(), Failure> {
     if is_stream(map) {
         return Err(Failure::usage("--map wants a file"));
     }
-    if let Some(other) = Format::from_path(map).filter(|format| *format != Format::Ply) {
-        return Err(Failure::usage(format!("--map writes PLY, and {} is named as {other}", map.display())));
-    }
-    Ok(())
+    output::check_extension(map, Format::Ply.name())
 }
 
 /// Writes B with its signed distances from A.

@@ -1,5 +1,6 @@
 //! What a lattice may have harmed, in words: bodies that changed, and walls and gaps that it does not hold.
 
+use super::report::RunReport;
 use super::summary::Row;
 use super::words::{self, UnitName};
 use crate::pipeline::{LostBody, Report, ThinRegion, Topology, TopologyReport};
@@ -77,6 +78,19 @@ fn thin_places(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
     rows
 }
 
+/// What may do better than a result that is mostly lost; nothing that cannot be.
+pub fn better(report: &RunReport, unit: UnitName<'_>) -> String {
+    let pipeline = report.pipeline.as_ref();
+    let finer = pipeline.and_then(|p| p.thin.voxel_that_keeps.filter(|keeps| *keeps < p.voxel));
+    match finer {
+        Some(voxel) => {
+            let voxel = words::with_unit(&words::rounded_up(voxel), unit).replace(' ', "");
+            format!("--voxel {voxel} would keep more of it")
+        }
+        None => "`meshwright inspect` says what is wrong with the input, and `render` shows it".into(),
+    }
+}
+
 /// More than this share of walls under two voxels is worth a smaller voxel: rays that graze edges and
 /// silhouettes make up to about 0.04 of short spans on any shape.
 const THIN_WALLS_TOLD: f64 = 0.05;
@@ -84,8 +98,15 @@ const THIN_WALLS_TOLD: f64 = 0.05;
 /// The voxel that would hold the walls, where some of them may have suffered.
 fn finer(pipeline: &Report, unit: UnitName<'_>) -> Option<String> {
     let thin = &pipeline.thin;
-    let keeps = thin.voxel_that_keeps.filter(|keeps| *keeps > 0.0 && *keeps < pipeline.voxel)?;
-    let told = thin.thin_spans as f64 > THIN_WALLS_TOLD * thin.spans as f64 && !thin.regions.is_empty();
-    let keeps = words::with_unit(&words::rounded_down(keeps), unit).replace(' ', "");
-    told.then(|| format!("--voxel {keeps} would keep 99 % of the walls"))
+    if thin.thin_spans as f64 <= THIN_WALLS_TOLD * thin.spans as f64 || thin.regions.is_empty() {
+        return None;
+    }
+    match thin.voxel_that_keeps {
+        Some(keeps) if keeps < pipeline.voxel => {
+            let keeps = words::with_unit(&words::rounded_down(keeps), unit).replace(' ', "");
+            Some(format!("--voxel {keeps} would keep 99 % of the walls"))
+        }
+        Some(_) => None,
+        None => Some("no voxel that is possible would keep 99 % of the walls: they are too thin".into()),
+    }
 }

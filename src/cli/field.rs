@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde_json::json;
 
+use super::choices::AnyFormat;
 use super::csg::{explain, named_files};
 use super::exit::{Asked, Exit, Failure};
 use super::field_args::FieldArgs;
@@ -17,11 +18,11 @@ use super::report::RunReport;
 use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
-use super::{dropped, limits, machine, sdf, solid};
+use super::{dropped, limits, machine, output, sdf, solid};
 use crate::field::Sampled;
 use crate::field::language::{self, LanguageError, Node, Value};
 use crate::fit::FitOptions;
-use crate::io::{Colours, Format, GridFormat, GridValues, Unit, WriteOptions};
+use crate::io::{Colours, GridFormat, GridValues, Unit, WriteOptions};
 use crate::mesh::Bounds;
 use crate::picture::ramp_colour;
 use crate::pipeline::{self, Built, FieldBand, FieldBuilder, FieldReport, Operand, Options, Precision, VoxelSize};
@@ -35,10 +36,10 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     let texts = Texts::parse(args, &files)?;
     let paths: Vec<&Path> = files.iter().map(|(_, path)| *path).collect();
     let targets = targets(args)?;
+    session.expect_frames(targets.len());
     let mut given = report
         .timed("read", |report| Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings))?;
-    let of_grids = given.grids.iter().find_map(|grid| grid.file.unit);
-    let unit = input::common_unit(&mut given.meshes, &args.reading, &mut report.warnings).or(of_grids);
+    let unit = given.common_unit(&args.reading, &mut report.warnings);
     given.describe(report);
     for (entry, (name, _)) in report.inputs.iter_mut().zip(&files) {
         entry.name = Some(name.to_string());
@@ -52,7 +53,7 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
         }
         Ok::<(), Failure>(())
     })?;
-    let operands = operands(&mut given, unit, args.max_memory, &mut report.warnings)?;
+    let operands = operands(&mut given, args.max_memory)?;
     let held: u64 = operands.iter().map(Operand::memory).sum();
     let bounds = operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
     let scale = scale(args, unit, bounds.as_ref())?;
@@ -71,23 +72,17 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     for (number, target) in targets.iter().enumerate() {
         run.frame(number, targets.len(), target, report)?;
     }
-    let broken = limits::broken(report, args.max_memory);
+    let broken = limits::beyond_memory(report, args.max_memory);
     report.warnings.extend(broken.iter().cloned());
     report.seconds = session.start.elapsed().as_secs_f64();
     report.peak_memory_bytes = super::machine::peak_memory();
     session.clear_bar();
     say(session, report, targets.len(), unit);
-    Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+    Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
 }
 
-/// The operands of the expression. Lattices in another unit than the rest are rescaled, with a line about it. The values
-/// of the files go over to the operands.
-fn operands(
-    given: &mut Given,
-    unit: Option<Unit>,
-    max_memory: Option<u64>,
-    notes: &mut Vec<String>,
-) -> Result<Vec<Operand>, Failure> {
+/// The operands of the expression, in one unit. The values of the files go over to the operands.
+fn operands(given: &mut Given, max_memory: Option<u64>) -> Result<Vec<Operand>, Failure> {
     let mut operands = Vec::new();
     let mut held = 0;
     for which in given.order.clone() {
@@ -100,16 +95,7 @@ fn operands(
                         .hint("for the lattices that are read; a larger --max-memory"));
                 }
                 let grid = &mut given.grids[n];
-                let factor = match (grid.file.unit, unit) {
-                    (Some(own), Some(unit)) if own != unit => {
-                        let factor = own.metres() / unit.metres();
-                        let path = &grid.entry.path;
-                        notes.push(format!("{path} is in {own}; it was rescaled to {unit} (times {factor})"));
-                        factor
-                    }
-                    _ => 1.0,
-                };
-                let sampled = Sampled::of_file(&grid.file, factor);
+                let sampled = Sampled::of_file(&grid.file, grid.factor);
                 grid.file.values = GridValues::Dense(Vec::new());
                 Operand::Grid(Arc::new(sampled))
             }
@@ -199,7 +185,14 @@ fn targets(args: &FieldArgs) -> Result<Vec<Place>, Failure> {
     }
     let place = |number: u32| {
         let path = frame_path(args, number, frames);
-        match GridFormat::from_path(&path).filter(|_| args.writing.out_format.is_none()) {
+        let of_grid = match args.writing.out_format.or_else(|| AnyFormat::from_path(&path)) {
+            Some(AnyFormat::Grid(format)) => {
+                output::check_extension(&path, format.name())?;
+                Some(format)
+            }
+            _ => None,
+        };
+        match of_grid {
             Some(_) if args.paint.is_some() => {
                 Err(Failure::usage("--paint colours the vertices of a mesh, and a lattice has none")
                     .hint("the values themselves: the expression of --paint in the place of EXPR"))
@@ -212,7 +205,7 @@ fn targets(args: &FieldArgs) -> Result<Vec<Place>, Failure> {
                     .hint("a name after -o that ends in .vti, .nrrd, .npy or .vdb"))
             }
             Some(format) => Ok(Place::Grid(path, format)),
-            None if args.writing.out_format.is_none() && Format::from_path(&path).is_none() && !is_stream(&path) => {
+            None if args.writing.out_format.is_none() && AnyFormat::from_path(&path).is_none() && !is_stream(&path) => {
                 Err(Failure::usage(format!("the name {} does not tell its format", path.display())).hint(
                     "end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or for a lattice in .vti, .nrrd, .npy or .vdb",
                 ))

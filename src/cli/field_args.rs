@@ -6,8 +6,8 @@ use clap::Args;
 
 use super::args::{CommonArgs, EXIT_CODES, InputArgs, OutputArgs};
 use super::choices::OrientChoice;
+use super::length::{BandChoice, Length, Simplify, parse_resolution, parse_size};
 use super::volume::Volume;
-use super::length::{BandChoice, Length, Simplify, parse_size};
 use crate::field::language;
 
 /// `field EXPR NAME=FILE... -o OUT`.
@@ -23,10 +23,10 @@ pub struct FieldArgs {
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
     /// Voxels along the longest side of the box around the shape
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel")]
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = parse_resolution, conflicts_with = "voxel")]
     pub resolution: u32,
     /// Size of a voxel, instead of --resolution
-    #[arg(long, value_name = "LEN")]
+    #[arg(long, value_name = "LEN", allow_hyphen_values = true)]
     pub voxel: Option<Length>,
     /// How far from zero a lattice has the values, or `full` for all of them [default: 4h, and full for what is no shape]
     #[arg(long, value_name = "LEN|full")]

@@ -9,7 +9,7 @@ use super::negative;
 use super::report::RunReport;
 use super::session::Session;
 use super::slice::{self, GridInput};
-use crate::io::{Colours, Format, GridFormat};
+use crate::io::{Colours, Format, GridFormat, Unit};
 use crate::mesh::TriMesh;
 
 /// Files as read.
@@ -57,6 +57,30 @@ impl Given {
             }
         }
         Ok(inputs)
+    }
+
+    /// Brings everything to one unit, as [`input::common_unit`] does, and says so. Grids keep their numbers; [`GridInput::factor`] is
+    /// what brings them there.
+    pub fn common_unit(&mut self, args: &InputArgs, notes: &mut Vec<String>) -> Option<Unit> {
+        let own = |which: &Which| match *which {
+            Which::Mesh(n) => self.meshes[n].loaded.unit,
+            Which::Grid(n) => self.grids[n].file.unit,
+        };
+        let unit = self.order.iter().find_map(own).or(args.unit)?;
+        input::bring_to(unit, &mut self.meshes, args, notes);
+        for grid in &mut self.grids {
+            let label = &grid.entry.path;
+            let own = grid.file.unit.or(args.unit).unwrap_or_else(|| {
+                notes.push(input::without_unit(label, unit));
+                unit
+            });
+            if own != unit {
+                grid.factor = own.metres() / unit.metres();
+                notes.push(input::rescaled(label, own, unit));
+            }
+            grid.file.unit = Some(unit);
+        }
+        Some(unit)
     }
 
     /// Memory that the values of the grids take, bytes.

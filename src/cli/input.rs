@@ -10,6 +10,7 @@ use super::exit::{Exit, Failure};
 use super::negative;
 use super::report::{InputEntry, PartEntry};
 use super::session::Session;
+use super::words;
 use crate::io::{self, Format, Loaded, Part, Unit};
 use crate::mesh::{ValidateOptions, Validity, validate};
 
@@ -92,11 +93,14 @@ pub fn mesh_of(
     let label = label(path);
     let stream = is_stream(path);
     let name = (!stream).then_some(path);
-    let loaded = io::read_bytes(bytes, args.in_format, name).map_err(|e| unreadable(&label, stream, args, &e))?;
+    let mut loaded = io::read_bytes(bytes, args.in_format, name).map_err(|e| unreadable(&label, stream, args, &e))?;
     if loaded.mesh.triangles.is_empty() {
         return Err(Failure::input(format!("{label}: the file has no triangles")));
     }
     session.progress.check()?;
+    let misnamed = name.and_then(Format::from_path).filter(|named| args.in_format.is_none() && *named != loaded.format);
+    let misnamed = misnamed.map(|named| format!("named as {named}, and read as {}, which it is", loaded.format));
+    loaded.warnings.extend(misnamed);
     notes.extend(loaded.warnings.iter().map(|warning| format!("{label}: {warning}")));
     let entries = |parts: &[Part]| -> Vec<PartEntry> {
         parts.iter().map(|part| PartEntry { name: part.name.clone(), triangles: part.triangles.len() }).collect()
@@ -164,7 +168,13 @@ pub fn examine(loaded: &Loaded, session: &Session) -> Result<Validity, Failure> 
 /// Brings all inputs to one unit and says which. Files that carry none are taken to be in
 /// `--unit`, or in the unit of the others; nothing is rescaled without a line about it.
 pub fn common_unit(inputs: &mut [Input], args: &InputArgs, notes: &mut Vec<String>) -> Option<Unit> {
-    let carried = inputs.iter().find_map(|input| input.loaded.unit);
+    let unit = inputs.iter().find_map(|input| input.loaded.unit).or(args.unit)?;
+    bring_to(unit, inputs, args, notes);
+    Some(unit)
+}
+
+/// Brings all inputs to `unit` and says which.
+pub fn bring_to(unit: Unit, inputs: &mut [Input], args: &InputArgs, notes: &mut Vec<String>) {
     let own: Vec<Unit> = inputs.iter().filter_map(|input| input.loaded.unit).collect();
     match args.unit {
         Some(asked) if own.len() == inputs.len() && own.iter().any(|unit| *unit != asked) => {
@@ -172,13 +182,12 @@ pub fn common_unit(inputs: &mut [Input], args: &InputArgs, notes: &mut Vec<Strin
         }
         _ => {}
     }
-    let unit = carried.or(args.unit)?;
     for input in inputs {
         let own = match (input.loaded.unit, args.unit) {
             (Some(own), _) => own,
             (None, Some(asked)) => asked,
             (None, None) => {
-                notes.push(format!("{} carries no unit; its numbers are taken as {unit}", input.label));
+                notes.push(without_unit(&input.label, unit));
                 unit
             }
         };
@@ -188,9 +197,19 @@ pub fn common_unit(inputs: &mut [Input], args: &InputArgs, notes: &mut Vec<Strin
             for p in std::iter::once(&mut input.loaded.mesh).chain(negative).flat_map(|mesh| &mut mesh.positions) {
                 *p *= factor;
             }
-            notes.push(format!("{} is in {own}; it was rescaled to {unit} (times {factor})", input.label));
+            notes.push(rescaled(&input.label, own, unit));
         }
         input.loaded.unit = Some(unit);
     }
-    Some(unit)
+}
+
+/// A line on an input in another unit than the rest.
+pub fn rescaled(label: &str, own: Unit, unit: Unit) -> String {
+    let factor = words::factor(own.metres() / unit.metres());
+    format!("{label} is in {own}; it was rescaled to {unit} (times {factor})")
+}
+
+/// A line on an input without a unit beside others.
+pub fn without_unit(label: &str, unit: Unit) -> String {
+    format!("{label} carries no unit; its numbers are taken as {unit}")
 }

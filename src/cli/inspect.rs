@@ -5,21 +5,25 @@ use serde_json::json;
 use super::args::InspectArgs;
 use super::choices::Defect;
 use super::exit::{Asked, Exit, Failure};
+use super::given::Given;
 use super::input::{self, Input};
 use super::length::Scale;
 use super::report::RunReport;
 use super::session::Session;
-use super::{summary, words};
+use super::{grids, summary, words};
 use crate::io::Unit;
 use crate::mesh::{Bounds, ValidateOptions, Validity, validate};
 use crate::pipeline::{self, LengthsReport, Options, ThicknessReport, VoxelSize};
 
 /// Looks at one file and prints a table.
 pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
-    let mut inputs =
-        report.timed("read", |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
-    let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
-    let Some(input) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
+    let mut given = report
+        .timed("read", |report| Given::read(&[&args.input], &args.reading, None, session, &mut report.warnings))?;
+    let unit = given.common_unit(&args.reading, &mut report.warnings);
+    if !given.grids.is_empty() {
+        return grids::inspect(args, &given, unit, session, report);
+    }
+    let Some(input) = given.meshes.first() else { return Err(Failure::internal("nothing was read")) };
     session.progress.stage("examine")?;
     let validity = report.timed("examine", |_| input::examine(&input.loaded, session))?;
     report.warnings.extend(closable(input, &validity, session)?);
@@ -72,9 +76,12 @@ fn thickness_rows(found: &ThicknessReport, unit: words::UnitName<'_>) -> Vec<sum
     };
     let mut rows = vec![("walls", described(&found.walls)), ("gaps", described(&found.gaps))];
     if let (Some(voxel), Some(resolution)) = (found.voxel_that_keeps, found.resolution_that_keeps) {
-        let voxel = words::with_unit(&words::rounded_down(voxel), unit);
+        let voxel = words::with_unit(&words::rounded_down(voxel.max(found.finest)), unit);
         let kept = format!("a voxel of {voxel} (--resolution {resolution}) puts two into 99 % of the walls and gaps");
         rows.push(("keeps", kept));
+    } else if found.walls.count + found.gaps.count > 0 {
+        let finest = words::with_unit(&words::rounded_up(found.finest), unit);
+        rows.push(("keeps", format!("no voxel is small enough to put two into 99 % of the walls and gaps; the finest possible is {finest}")));
     }
     if found.silent > 0.0 {
         rows.push((

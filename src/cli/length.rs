@@ -4,7 +4,9 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::Duration;
 
+use super::words;
 use crate::io::Unit;
+use crate::pipeline::MAX_RESOLUTION;
 
 /// A length as typed, not yet in model units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,6 +123,7 @@ pub enum QuantityError {
 
 const A_LENGTH: &str =
     "a length such as 0.4mm, 1in, 1% (of the bounding box diagonal), 2h (voxels) or 0.4 (in the file's units)";
+const A_POINT: &str = "a length: decimals are written with a point, such as 1.5mm";
 const A_SIZE: &str = "a size such as 500M, 2G or 1500000";
 const A_DURATION: &str = "a duration such as 30s, 5m or 1h";
 
@@ -137,7 +140,10 @@ impl FromStr for Length {
     type Err = QuantityError;
 
     fn from_str(text: &str) -> Result<Self, QuantityError> {
-        let malformed = || QuantityError::Malformed { text: text.into(), wanted: A_LENGTH };
+        let is_a_length = |text: &str| split(text).is_some_and(|(_, s)| matches!(s, "" | "h" | "%") || s.parse::<Unit>().is_ok());
+        let comma = text.contains(',') && is_a_length(&text.replace(',', "."));
+        let wanted = if comma { A_POINT } else { A_LENGTH };
+        let malformed = || QuantityError::Malformed { text: text.into(), wanted };
         let (value, suffix) = split(text).ok_or_else(malformed)?;
         if value <= 0.0 {
             return Err(QuantityError::NotPositive { text: text.into() });
@@ -200,6 +206,26 @@ impl Length {
         } else {
             Err(QuantityError::NotPositive { text: self.to_string() })
         }
+    }
+}
+
+/// The radius of a ball.
+pub fn parse_radius(text: &str) -> Result<Length, String> {
+    text.parse().map_err(|error| match error {
+        QuantityError::NotPositive { text } => {
+            format!("`{text}` is not above zero, as a radius must be: `dilate` grows by it, `erode` shrinks by it")
+        }
+        error => error.to_string(),
+    })
+}
+
+/// Voxels along the longest side of a box.
+pub fn parse_resolution(text: &str) -> Result<u32, String> {
+    let most = words::count(MAX_RESOLUTION as usize);
+    match text.trim().parse::<i64>() {
+        Ok(count) if (2..=i64::from(MAX_RESOLUTION)).contains(&count) => Ok(count as u32),
+        Ok(_) => Err(format!("from 2 to {most} voxels are possible along the longest side of the model")),
+        Err(_) => Err(format!("a whole number of voxels from 2 to {most} is needed; --voxel takes a length")),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Limits that a finished run may have passed: the file is usable, but the user must know.
+//! What may be wrong with a finished run: a result that is not what was asked for, or more memory than was allowed.
 
 use super::report::RunReport;
 use super::{doubts, words};
@@ -12,8 +12,8 @@ const TOO_MANY_LOST: f64 = 0.2;
 /// result is a guess. A car body made of sheets has 0.3, a hundred scattered triangles 0.7.
 const TOO_MANY_DOUBTS: f64 = 0.5;
 
-/// A sentence for each stated limit that does not hold.
-pub fn broken(report: &RunReport, max_memory: Option<u64>) -> Vec<String> {
+/// A sentence for each reason why the result is not what the input describes. Such a result is written only when that is asked for.
+pub fn lost(report: &RunReport) -> Vec<String> {
     let mut sentences = Vec::new();
     if let Some(pipeline) = &report.pipeline {
         let (thin, vote) = (&pipeline.thin, &pipeline.vote);
@@ -34,15 +34,19 @@ pub fn broken(report: &RunReport, max_memory: Option<u64>) -> Vec<String> {
                 .push(format!("the result is not what the input describes: {}", doubts::changes(topology).join("; ")));
         }
     }
+    sentences
+}
+
+/// A sentence when the run took more memory than it was allowed; the result is right all the same.
+pub fn beyond_memory(report: &RunReport, max_memory: Option<u64>) -> Option<String> {
     match (report.peak_memory_bytes.or_else(super::machine::peak_memory), max_memory) {
-        (Some(peak), Some(cap)) if peak > cap => sentences.push(format!(
+        (Some(peak), Some(cap)) if peak > cap => Some(format!(
             "the run took {} of memory, more than the {} of --max-memory",
             words::bytes(peak),
             words::bytes(cap)
         )),
-        _ => {}
+        _ => None,
     }
-    sentences
 }
 
 fn share(part: usize, whole: usize) -> f64 {
@@ -63,21 +67,22 @@ mod tests {
 
     #[test]
     fn grazing_rays_are_no_broken_limit_and_lost_walls_are() {
-        assert!(broken(&report(60, 0), None).is_empty());
-        assert_eq!(broken(&report(420, 0), None).len(), 1);
-        assert!(broken(&RunReport::new("repair"), None).is_empty());
+        assert!(lost(&report(60, 0)).is_empty());
+        assert_eq!(lost(&report(420, 0)).len(), 1);
+        assert!(lost(&RunReport::new("repair")).is_empty());
     }
 
     #[test]
     fn a_result_that_is_mostly_a_guess_is_told() {
-        assert!(broken(&report(0, 300), None).is_empty());
-        assert_eq!(broken(&report(0, 670), None).len(), 1);
+        assert!(lost(&report(0, 300)).is_empty());
+        assert_eq!(lost(&report(0, 670)).len(), 1);
     }
 
     #[test]
     fn a_passed_memory_cap_is_told() {
         let used = RunReport { peak_memory_bytes: Some(2000), ..report(0, 0) };
-        assert!(broken(&used, Some(2000)).is_empty());
-        assert_eq!(broken(&used, Some(1999)), ["the run took 2.0 kB of memory, more than the 2.0 kB of --max-memory"]);
+        assert_eq!(beyond_memory(&used, Some(2000)), None);
+        let told = beyond_memory(&used, Some(1999)).expect("it is more");
+        assert_eq!(told, "the run took 2.0 kB of memory, more than the 2.0 kB of --max-memory");
     }
 }

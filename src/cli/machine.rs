@@ -94,6 +94,44 @@ pub fn tame_signals(no_bug: std::sync::Arc<std::sync::atomic::AtomicBool>) {
 #[cfg(not(unix))]
 pub fn tame_signals(_: std::sync::Arc<std::sync::atomic::AtomicBool>) {}
 
+#[cfg(any(test, all(target_os = "linux", feature = "gpu")))]
+/// Settings under which graphics drivers print nothing of their own: what Mesa logs goes nowhere, and without a desktop its layer
+/// that looks for the desktop's adapter stays off. What the user has set stays.
+fn driver_settings(is_set: impl Fn(&str) -> bool, has_desktop: bool) -> Vec<(&'static str, &'static str)> {
+    let mut settings = Vec::new();
+    if !is_set("MESA_LOG_FILE") {
+        settings.push(("MESA_LOG_FILE", "/dev/null"));
+    }
+    if !has_desktop && !is_set("NODEVICE_SELECT") && !is_set("MESA_VK_DEVICE_SELECT") {
+        settings.push(("NODEVICE_SELECT", "1"));
+    }
+    settings
+}
+
+/// Makes graphics drivers print nothing. A process cannot safely change its own environment, so it begins once more with another one;
+/// where that cannot be, it goes on as it is.
+#[cfg(all(target_os = "linux", feature = "gpu"))]
+pub fn quiet_drivers() {
+    use std::os::unix::process::CommandExt;
+    let has_desktop = std::env::var_os("XDG_RUNTIME_DIR").is_some_and(|folder| Path::new(&folder).is_dir());
+    let settings = driver_settings(|name| std::env::var_os(name).is_some(), has_desktop);
+    let Ok(program) = std::env::current_exe() else { return };
+    if settings.is_empty() {
+        return;
+    }
+    let mut arguments = std::env::args_os();
+    let mut command = std::process::Command::new(program);
+    if let Some(name) = arguments.next() {
+        command.arg0(name);
+    }
+    // It comes back only when it has failed.
+    let _ = command.args(arguments).envs(settings).exec();
+}
+
+/// Elsewhere drivers print nothing.
+#[cfg(not(all(target_os = "linux", feature = "gpu")))]
+pub fn quiet_drivers() {}
+
 /// Bytes of memory that this process holds; Linux only.
 pub fn resident() -> Option<u64> {
     of_process("VmRSS:")
@@ -167,6 +205,19 @@ fn free_in_group(folder: &Path, [most, now, files]: [&str; 3]) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_the_user_has_set_for_drivers_stays() {
+        let names = |set: &[&str], desktop| {
+            let settings = driver_settings(|name| set.contains(&name), desktop);
+            settings.into_iter().map(|(name, _)| name).collect::<Vec<_>>()
+        };
+        assert_eq!(names(&[], false), ["MESA_LOG_FILE", "NODEVICE_SELECT"]);
+        assert_eq!(names(&[], true), ["MESA_LOG_FILE"]);
+        assert_eq!(names(&["MESA_VK_DEVICE_SELECT"], false), ["MESA_LOG_FILE"]);
+        // Begun once more, there is nothing left to set.
+        assert!(names(&["MESA_LOG_FILE", "NODEVICE_SELECT"], false).is_empty());
+    }
 
     #[test]
     fn numbers_of_the_system_are_read() {

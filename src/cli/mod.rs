@@ -7,6 +7,7 @@ mod change;
 mod choices;
 mod compare;
 mod convert;
+mod course;
 mod csg;
 mod csg_parser;
 mod devices;
@@ -18,11 +19,14 @@ mod field;
 mod field_args;
 mod files;
 mod given;
+mod grids;
 mod input;
 mod inspect;
+mod keep;
 mod length;
 mod limits;
 mod machine;
+mod misuse;
 mod morphology;
 mod negative;
 mod output;
@@ -60,10 +64,17 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version also come this way; there is nobody to tell if printing fails.
-            let _ = error.print();
+            match misuse::explain(&error, &std::env::args_os().skip(1).collect::<Vec<_>>()).filter(|_| error.use_stderr()) {
+                Some(failure) => print_failure(&failure),
+                None => drop(error.print()),
+            }
             return ExitCode::from(if error.use_stderr() { Exit::Usage } else { Exit::Done }.code());
         }
     };
+    // The others never load a graphics driver.
+    if !matches!(cli.verb, Verb::Inspect(_) | Verb::Compare(_) | Verb::Convert(_) | Verb::Render(_)) {
+        machine::quiet_drivers();
+    }
     let no_bug = Arc::new(AtomicBool::new(true));
     machine::tame_signals(no_bug.clone());
     std::panic::set_hook(Box::new(move |panic| {
@@ -215,7 +226,7 @@ impl<'a> Job<'a> {
 
 /// Runs one verb within a session, writes its report, gives all files their names, and prints what there is to say.
 fn run(mut job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<Exit, Failure>) -> Exit {
-    let ready = job.check().and_then(|()| Session::new(job.common, job.max_memory));
+    let ready = job.check().and_then(|()| Session::new(job.verb, job.common, job.max_memory));
     let session = match ready {
         Ok(session) => session,
         Err(failure) => {

@@ -1,63 +1,97 @@
-//! The progress bar: on a terminal only.
+//! The progress bar on a terminal, or with `-v` a line now and then where there is none.
 
 use std::io::IsTerminal;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::Builder;
+use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+use super::course::Course;
 use crate::progress::Event;
 
-/// The stages of a run in order, and about what share of its time each takes, in percent (the
-/// Stanford bunny at 256, file to file).
-const STAGES: [(&str, u32); 12] = [
-    ("read", 2),
-    ("examine", 4),
-    ("orient", 2),
-    ("ldi", 6),
-    ("spans", 1),
-    ("vote", 12),
-    ("sdf", 8),
-    ("contour", 5),
-    ("collapse", 12),
-    ("fit", 38),
-    ("write", 2),
-    ("verify", 7),
-];
+/// Where nobody sees a bar, a line comes so often.
+const BETWEEN_LINES: Duration = Duration::from_secs(10);
 
-/// The bar and the stage it shows.
+/// Columns of the bar.
+const WIDTH: usize = 24;
+
+/// Shows how far the run is.
 pub struct Meter {
     bar: ProgressBar,
-    stage: AtomicUsize,
+    course: Watched,
+    /// Dropped, it ends the lines.
+    lines: Mutex<Option<Sender<()>>>,
+}
+
+/// How far the run is, and when it began.
+#[derive(Clone)]
+struct Watched {
+    course: Arc<Mutex<Course>>,
+    start: Instant,
+}
+
+impl Watched {
+    fn lock(&self) -> (MutexGuard<'_, Course>, Duration) {
+        (self.course.lock().unwrap_or_else(PoisonError::into_inner), self.start.elapsed())
+    }
+
+    fn show(&self, event: Event<'_>) {
+        let (mut course, now) = self.lock();
+        match event {
+            Event::Stage(stage) => course.begin(stage, now),
+            Event::Share(share) => course.share(share, now),
+        }
+    }
+
+    fn style(&self) -> Option<ProgressStyle> {
+        let (bar, figures) = (self.clone(), self.clone());
+        let style = ProgressStyle::with_template("{spinner} {msg:<32} [{course}] {figures}").ok()?;
+        let drawn = move |_: &ProgressState, out: &mut dyn std::fmt::Write| {
+            let (course, now) = bar.lock();
+            let filled = (course.position(now) * WIDTH as f64) as usize;
+            let _ = write!(out, "{:<WIDTH$}", "=".repeat(filled.min(WIDTH)));
+        };
+        let told = move |_: &ProgressState, out: &mut dyn std::fmt::Write| {
+            let (course, now) = figures.lock();
+            let _ = out.write_str(&course.figures(now));
+        };
+        Some(style.with_key("course", drawn).with_key("figures", told))
+    }
 }
 
 impl Meter {
-    /// A bar on standard error where that is a terminal and `wanted`; else one that draws nothing.
-    pub fn new(wanted: bool) -> Self {
-        let bar = if wanted && std::io::stderr().is_terminal() {
-            ProgressBar::new(total().into())
+    /// Of a run of `verb`: a bar on standard error where that is a terminal; lines where it is none and they are wanted; nothing when `quiet`.
+    pub fn new(verb: &str, quiet: bool, verbose: bool) -> Self {
+        let terminal = std::io::stderr().is_terminal();
+        let course = Watched { course: Arc::new(Mutex::new(Course::of(verb))), start: Instant::now() };
+        let bar = if terminal && !quiet {
+            ProgressBar::new(1)
         } else {
             ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden())
         };
         if !bar.is_hidden() {
-            if let Ok(style) = ProgressStyle::with_template("{spinner} {msg:<9} [{bar:30}] {elapsed}") {
-                bar.set_style(style.progress_chars("=> "));
-            }
+            course.style().into_iter().for_each(|style| bar.set_style(style));
             bar.enable_steady_tick(Duration::from_millis(100));
         }
-        Self { bar, stage: AtomicUsize::new(STAGES.len()) }
+        let told = (!terminal && verbose && !quiet)
+            .then(|| tell_every(BETWEEN_LINES, course.clone(), super::session::eprintln_quietly));
+        Self { bar, course, lines: Mutex::new(told.flatten()) }
+    }
+
+    /// So many results will be made one after the other.
+    pub fn expect_frames(&self, frames: usize) {
+        *self.course.lock().0 = Course::of_frames(frames);
     }
 
     /// Shows `event`.
     pub fn show(&self, event: Event<'_>) {
-        match event {
-            Event::Stage(name) => {
-                let stage = STAGES.iter().position(|(stage, _)| *stage == name).unwrap_or(STAGES.len());
-                self.stage.store(stage, Ordering::Relaxed);
-                self.bar.set_message(name.to_string());
-                self.bar.set_position(position(stage, 0.0));
-            }
-            Event::Share(share) => self.bar.set_position(position(self.stage.load(Ordering::Relaxed), share)),
+        self.course.show(event);
+        if let Event::Stage(_) = event {
+            // A bar that is drawn looks at the course: it must not be locked then.
+            let words = self.course.lock().0.words();
+            self.bar.set_message(words);
         }
     }
 
@@ -66,23 +100,25 @@ impl Meter {
         self.bar.suspend(print);
     }
 
-    /// Takes the bar away.
+    /// Takes the bar away, and ends the lines.
     pub fn clear(&self) {
         self.bar.finish_and_clear();
+        self.lines.lock().unwrap_or_else(PoisonError::into_inner).take();
     }
 }
 
-fn total() -> u32 {
-    STAGES.iter().map(|(_, weight)| weight).sum()
-}
-
-/// How far the run is when `share` of `stage` is done; an unknown stage counts for nothing.
-fn position(stage: usize, share: f32) -> u64 {
-    let before: u32 = STAGES.iter().take(stage).map(|(_, weight)| weight).sum();
-    match STAGES.get(stage) {
-        Some((_, weight)) => u64::from(before) + (share.clamp(0.0, 1.0) * *weight as f32) as u64,
-        None => 0,
-    }
+/// Says how far the run is, every so often until what is returned is dropped. Where no thread can be had, nothing is said.
+fn tell_every(pause: Duration, watched: Watched, tell: impl Fn(&str) + Send + 'static) -> Option<Sender<()>> {
+    let (end, ended) = channel();
+    let telling = move || {
+        while ended.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
+            let (course, now) = watched.lock();
+            let line = course.line(now);
+            drop(course);
+            tell(&line);
+        }
+    };
+    Builder::new().name("progress".into()).spawn(telling).ok().map(|_| end)
 }
 
 #[cfg(test)]
@@ -90,17 +126,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_bar_only_goes_forwards_and_ends_full() {
-        let positions: Vec<u64> = (0..STAGES.len())
-            .flat_map(|stage| [position(stage, 0.0), position(stage, 0.5), position(stage, 1.0)])
-            .collect();
-        assert!(positions.is_sorted(), "{positions:?}");
-        assert_eq!((positions[0], positions[positions.len() - 1]), (0, total().into()));
-        assert_eq!(position(STAGES.len(), 0.5), 0);
+    fn nothing_is_drawn_without_a_terminal_or_a_wish() {
+        let meter = Meter::new("repair", true, false);
+        assert!(meter.bar.is_hidden() && meter.lines.lock().expect("nobody panics").is_none());
     }
 
     #[test]
-    fn nothing_is_drawn_without_a_terminal_or_a_wish() {
-        assert!(Meter::new(false).bar.is_hidden());
+    fn lines_come_in_time_and_end_with_the_run() {
+        let course = Watched { course: Arc::new(Mutex::new(Course::of("repair"))), start: Instant::now() };
+        course.show(Event::Stage("vote"));
+        let said = Arc::new(Mutex::new(Vec::new()));
+        let saying = said.clone();
+        let lines = tell_every(Duration::from_millis(20), course.clone(), move |line| {
+            saying.lock().expect("nobody panics").push(line.to_owned());
+        });
+        let count = || said.lock().expect("nobody panics").len();
+        let start = Instant::now();
+        while count() < 3 && start.elapsed() < Duration::from_secs(20) {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        drop(lines);
+        std::thread::sleep(Duration::from_millis(60));
+        let after = count();
+        std::thread::sleep(Duration::from_millis(100));
+        assert_eq!(count(), after, "the lines go on after the run");
+        let said = said.lock().expect("nobody panics");
+        assert!(said.len() >= 3 && said[0].contains("telling inside from outside, "), "{said:?}");
     }
 }

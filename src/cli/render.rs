@@ -19,11 +19,12 @@ use crate::picture::{EdgeDrawing, Image, Painted, RenderOptions, View, render, r
 
 /// Draws one mesh or slice, or two on one sheet.
 pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
+    super::output::check_extension(&args.output, "png")?;
     let paths: Vec<&Path> = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
     let mut inputs = report
         .timed("read", |report| Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings))?;
-    // Two meshes share one camera, so they must share one unit.
-    input::common_unit(&mut inputs.meshes, &args.reading, &mut report.warnings);
+    // What shares one camera, or one plane, must share one unit.
+    inputs.common_unit(&args.reading, &mut report.warnings);
     inputs.describe(report);
     let inputs = Inputs(inputs);
     let options = options(args);
@@ -62,9 +63,9 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
         unit: None,
         validity: None,
     });
-    let broken = limits::broken(report, args.max_memory);
+    let broken = limits::beyond_memory(report, args.max_memory);
     report.warnings.extend(broken.iter().cloned());
-    Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+    Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
 }
 
 /// What is drawn.
@@ -97,7 +98,7 @@ impl Inputs {
         };
         let fields: Vec<Field<'_>> = sliced.iter().map(field).collect::<Result<_, _>>()?;
         let size = [options.width, options.height];
-        let slices = slice::draw(&fields, choice, size, session, &mut report.warnings)?;
+        let slices = slice::draw(&fields, choice, size, session)?;
         let mut slices = slices.into_iter();
         let mut images = Vec::new();
         for which in &self.0.order {

@@ -49,6 +49,9 @@ pub struct RunReport {
     /// What `field` was made of, one entry for each frame.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub fields: Vec<FieldReport>,
+    /// The lattice that `inspect` looked at.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grid: Option<super::grids::GridEntry>,
     /// What `inspect --thickness` measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<ThicknessReport>,
@@ -155,6 +158,7 @@ impl RunReport {
             pipeline: None,
             distance: None,
             fields: Vec::new(),
+            grid: None,
             thickness: None,
             devices: None,
             comparison: None,
@@ -216,6 +220,7 @@ pub fn check_streams<'a>(common: &CommonArgs, made: impl IntoIterator<Item = &'a
         Some(report) if is_stream(report) => {
             Err(Failure::usage("--report wants a file").hint("--json writes the report to standard output"))
         }
-        _ => Ok(()),
+        Some(report) => super::output::check_extension(report, "json"),
+        None => Ok(()),
     }
 }

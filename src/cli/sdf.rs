@@ -49,20 +49,23 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
     let fallback = outcome.report.made_by.as_ref().and_then(|made_by| made_by.fallback.as_ref());
     report.warnings.extend(fallback.map(|reason| format!("the main processor drew the slices: {reason}")));
     report.distance = Some(outcome.report.clone());
-    let broken = limits::broken(report, args.max_memory);
+    let broken = limits::beyond_memory(report, args.max_memory);
     report.warnings.extend(broken.iter().cloned());
     report.seconds = session.start.elapsed().as_secs_f64();
     report.peak_memory_bytes = super::machine::peak_memory();
     session.clear_bar();
     say(session, report, &outcome.report, &options, unit);
-    Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+    Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
 }
 
 /// The format of the output; everything about it that can be known before the work begins is checked.
 fn format(args: &SdfArgs) -> Result<Option<GridFormat>, Failure> {
     let Some(path) = args.output.as_deref() else { return Ok(None) };
     let format = match (args.out_format, GridFormat::from_path(path)) {
-        (Some(format), _) | (None, Some(format)) => format,
+        (Some(format), _) | (None, Some(format)) => {
+            output::check_extension(path, format.name())?;
+            format
+        }
         (None, None) if is_stream(path) => {
             return Err(Failure::usage("standard output has no name that tells its format")
                 .hint("--out-format says it, for example --out-format nrrd"));

@@ -41,9 +41,9 @@ pub struct Drafted {
 
 impl Session {
     /// Sets up threads, signals, the deadline, the cap on memory and the progress bar.
-    pub fn new(common: &CommonArgs, max_memory: Option<u64>) -> Result<Self, Failure> {
+    pub fn new(verb: &str, common: &CommonArgs, max_memory: Option<u64>) -> Result<Self, Failure> {
         let start = Instant::now();
-        let meter = Arc::new(Meter::new(!common.quiet));
+        let meter = Arc::new(Meter::new(verb, common.quiet, common.verbose));
         let flag = Arc::new(AtomicBool::new(false));
         let listening = meter.clone();
         let mut progress = Progress::none().with_flag(flag.clone()).with_listener(move |event| listening.show(event));
@@ -67,6 +67,11 @@ impl Session {
         if !self.quiet {
             self.meter.above(|| eprintln_quietly(line));
         }
+    }
+
+    /// So many results will be made one after the other.
+    pub fn expect_frames(&self, frames: usize) {
+        self.meter.expect_frames(frames);
     }
 
     /// Takes the progress bar away.
@@ -142,6 +147,6 @@ pub fn painted(text: &str, code: &str) -> String {
 }
 
 /// Like `eprintln!`, but a closed standard error is no reason to panic.
-fn eprintln_quietly(line: &str) {
+pub(super) fn eprintln_quietly(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }

@@ -112,8 +112,10 @@ impl SliceChoice {
 
 /// A grid as read.
 pub struct GridInput {
-    /// The content.
+    /// The content; its unit is the one that `factor` leads to.
     pub file: GridFile,
+    /// What brings its lengths to the unit of the run.
+    pub factor: f64,
     /// Its entry in the report.
     pub entry: InputEntry,
 }
@@ -148,7 +150,7 @@ pub fn grid_of(
         warnings: file.warnings.clone(),
         validity: None,
     };
-    Ok(GridInput { file, entry })
+    Ok(GridInput { file, factor: 1.0, entry })
 }
 
 /// A field to slice.
@@ -163,10 +165,10 @@ pub struct Field<'a> {
 impl<'a> Field<'a> {
     /// The values of a grid, linear between voxels and nothing beyond.
     pub fn of_grid(grid: &'a GridInput) -> Self {
-        let file = &grid.file;
+        let (file, factor) = (&grid.file, grid.factor);
         let extent = DVec3::from(file.dims.map(|count| (count - 1) as f64)) * file.spacing;
-        let bounds = Bounds { min: file.origin, max: file.origin + extent };
-        let value = Box::new(|p| interpolated(file, p).unwrap_or(f64::NAN));
+        let bounds = Bounds { min: file.origin * factor, max: (file.origin + extent) * factor };
+        let value = Box::new(move |p| interpolated(file, p / factor).map_or(f64::NAN, |value| value * factor));
         Self { label: &grid.entry.path, unit: file.unit, bounds, value }
     }
 
@@ -245,14 +247,10 @@ pub fn draw(
     choice: &SliceChoice,
     size: [u32; 2],
     session: &Session,
-    warnings: &mut Vec<String>,
 ) -> Result<Vec<(Image, SliceEntry)>, Failure> {
     let bounds = fields.iter().map(|field| field.bounds).reduce(|a, b| a.union(&b));
     let bounds = bounds.ok_or_else(|| Failure::internal("there is no field to slice"))?;
     let unit = fields.iter().find_map(|field| field.unit);
-    if fields.iter().any(|field| field.unit.is_some_and(|own| Some(own) != unit)) {
-        warnings.push("the slices have different units; nothing was rescaled".to_owned());
-    }
     let at = choice.resolve(&bounds, unit)?;
     let plane = SlicePlane::through(&bounds, choice.axis, at);
     let sample = |field: &Field<'_>| sample_slice(&field.value, &plane, size, &session.progress);

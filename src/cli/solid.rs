@@ -13,7 +13,7 @@ use super::length::{Scale, Simplify};
 use super::output::{self, Target, write_verified};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
-use super::{backend, limits, machine, negative, summary, words};
+use super::{backend, doubts, keep, limits, machine, negative, summary, words};
 use crate::fit::{FitOptions, rounded};
 use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
 use crate::ldi::Expression;
@@ -213,24 +213,31 @@ fn make(
     drop(meshes);
     report.stages.extend(outcome.report.stages.iter().cloned());
     report.warnings.extend(outcome.report.warnings.iter().cloned());
-    if let Some(path) = &args.map {
+    report.pipeline = Some(outcome.report.clone());
+    let lost = limits::lost(report);
+    let writes = target.is_some() || args.map.is_some();
+    let withheld = writes && !lost.is_empty() && !args.keeps_partial();
+    if let Some(path) = args.map.as_ref().filter(|_| !withheld) {
         report.timed("map", |_| write_map(path, &outcome, &canal_of, session))?;
     }
-    report.pipeline = Some(outcome.report.clone());
-    if let Some(target) = target {
+    if let Some(target) = target.filter(|_| !withheld) {
         let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
         let colours = pipeline::carry_colours(&outcome, &operands);
         write(&outcome.mesh, colours.as_ref(), target, session, report)?;
     }
-    let broken = limits::broken(report, args.max_memory);
-    report.warnings.extend(broken.iter().cloned());
+    let beyond = limits::beyond_memory(report, args.max_memory);
+    report.warnings.extend(beyond.iter().chain(lost.iter().filter(|_| !withheld)).cloned());
     report.seconds = session.start.elapsed().as_secs_f64();
     report.peak_memory_bytes = super::machine::peak_memory();
     session.clear_bar();
     let name = unit.map(|unit| unit.to_string());
     summary::say(session, report, name.as_deref());
     change::list(job.change, report, &args.common, name.as_deref())?;
-    Ok(if broken.is_empty() { Exit::Done } else { Exit::Limit })
+    if withheld {
+        session.speak();
+        return Err(keep::withheld(&lost, args.output.as_deref(), &doubts::better(report, name.as_deref())));
+    }
+    Ok(if beyond.is_none() && lost.is_empty() { Exit::Done } else { Exit::Limit })
 }
 
 /// Writes the result and judges the written file.
@@ -247,8 +254,12 @@ pub(super) fn write(
     if let Some(moved) = moved {
         report.warnings.push(rounding(moved, target.options.format));
     }
+    // Of several frames it is said once.
+    let of_unit = target.unit_note().filter(|note| !report.warnings.contains(note));
+    report.warnings.extend(of_unit);
+    let factor = target.options.factor();
     let (entry, validity) = report.timed("write and verify", |_| {
-        write_verified(target, &stored, colours, session, |read| judge(read, &stored, moved, session))
+        write_verified(target, &stored, colours, session, |read| judge(read, (&stored, factor), moved, session))
     })?;
     report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
     Ok(())
@@ -300,10 +311,15 @@ fn write_map(path: &Path, outcome: &Outcome, canal_of: &[u32], session: &Session
     output::write_side(path, &bytes, session)
 }
 
-/// Whether the file as read back holds the mesh that was made, and keeps the program's promise. `moved`: how far rounding to the
-/// numbers of the format moved vertices.
-fn judge(read: &Loaded, made: &TriMesh, moved: Option<f64>, session: &Session) -> Result<Validity, Failure> {
-    check_same(&read.mesh, made)?;
+/// Whether the file as read back holds the mesh that was made, times a factor, and keeps the program's promise. `moved`: how far
+/// rounding to the numbers of the format moved vertices.
+fn judge(
+    read: &Loaded,
+    (made, factor): (&TriMesh, f64),
+    moved: Option<f64>,
+    session: &Session,
+) -> Result<Validity, Failure> {
+    check_same(&read.mesh, made, factor)?;
     let options = ValidateOptions { self_intersections: true, weld: input::is_soup_format(read.format) };
     let validity = validate(&read.mesh, &options, &session.progress)?;
     if validity.is_valid() {
@@ -322,9 +338,9 @@ fn judge(read: &Loaded, made: &TriMesh, moved: Option<f64>, session: &Session) -
     })
 }
 
-/// Whether two meshes have the same triangles, in the same order, at exactly the same places.
-fn check_same(read: &TriMesh, made: &TriMesh) -> Result<(), Failure> {
+/// Whether two meshes have the same triangles, in the same order, at exactly the same places, times a factor.
+fn check_same(read: &TriMesh, made: &TriMesh, factor: f64) -> Result<(), Failure> {
     let same = read.triangles.len() == made.triangles.len()
-        && (0..made.triangles.len()).all(|t| read.corners(t) == made.corners(t));
+        && (0..made.triangles.len()).all(|t| read.corners(t) == made.corners(t).map(|p| p * factor));
     if same { Ok(()) } else { Err(Failure::internal("the file does not hold what was written to it; it was removed")) }
 }

@@ -1,5 +1,6 @@
 //! What a run says to a person: a few aligned lines, made from the report.
 
+use super::course::in_words;
 use super::{doubts, dropped};
 use super::input::Input;
 use super::report::{InputEntry, RunReport};
@@ -54,8 +55,12 @@ pub fn result_rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
     let Some((output, validity)) = report.output.as_ref().and_then(|o| Some((o, o.validity.as_ref()?))) else {
         return Vec::new();
     };
+    // The file may be in another unit than the model is told of in.
+    let metres = |name: Option<&str>| name.and_then(|name| name.parse().ok()).map(Unit::metres);
+    let factor = metres(output.unit.as_deref()).zip(metres(unit)).map_or(1.0, |(file, model)| file / model);
+    let volume = validity.volume * factor.powi(3);
     vec![
-        ("result", format!("{}: {}", output.path, solid(validity, unit))),
+        ("result", format!("{}: {}, volume {}", output.path, solid(validity), words::volume(volume, unit))),
         ("result", "closed, oriented, without self-intersections; checked on the written file".into()),
     ]
 }
@@ -63,8 +68,10 @@ pub fn result_rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
 /// What was read, and what is wrong with it.
 pub fn input_rows(report: &RunReport) -> Vec<Row> {
     let mut rows = Vec::new();
+    // All inputs were brought to one unit.
+    let unit = report.options.get("unit").and_then(|unit| unit.as_str());
     for input in &report.inputs {
-        rows.push(("input", described(input)));
+        rows.push(("input", described(input, unit)));
         rows.extend(wrong(input).into_iter().map(|text| ("wrong", text)));
     }
     rows
@@ -78,10 +85,10 @@ pub fn time(report: &RunReport) -> Row {
 
 /// The seconds of each stage.
 pub fn stages(report: &RunReport) -> impl Iterator<Item = Row> {
-    report.stages.iter().map(|stage| ("stage", format!("{:8.3} s  {}", stage.seconds, stage.stage)))
+    report.stages.iter().map(|stage| ("stage", format!("{:8.3} s  {}", stage.seconds, in_words(stage.stage))))
 }
 
-fn described(input: &InputEntry) -> String {
+fn described(input: &InputEntry, unit: UnitName<'_>) -> String {
     let mut text = format!("{}: ", input.path);
     if let Some(name) = &input.name {
         text = format!("{name} = {text}");
@@ -95,7 +102,7 @@ fn described(input: &InputEntry) -> String {
         text.push_str(&format!(" in {}", words::plural(input.parts.len(), "object")));
     }
     if let Some(bounds) = input.validity.as_ref().and_then(|validity| validity.bounds) {
-        text.push_str(&format!(", {}", words::size(extent(bounds), input.unit.as_deref())));
+        text.push_str(&format!(", {}", words::size(extent(bounds), unit)));
     }
     text
 }
@@ -200,7 +207,7 @@ pub fn voxel(voxel: f64, dims: [i32; 3], unit: UnitName<'_>) -> String {
     format!("{} ({x} x {y} x {z} of them)", words::length(voxel, unit))
 }
 
-fn solid(validity: &Validity, unit: UnitName<'_>) -> String {
+fn solid(validity: &Validity) -> String {
     let mut text = format!(
         "{}, {}",
         words::plural(validity.triangles, "triangle"),
@@ -209,7 +216,6 @@ fn solid(validity: &Validity, unit: UnitName<'_>) -> String {
     if let Some(genus) = validity.genus.filter(|genus| *genus > 0) {
         text.push_str(&format!(" with {}", words::plural(genus as usize, "tunnel")));
     }
-    text.push_str(&format!(", volume {}", words::volume(validity.volume, unit)));
     text
 }
 

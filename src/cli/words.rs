@@ -1,20 +1,9 @@
 //! Numbers and quantities in words.
 
+pub(crate) use crate::digits::{count, factor, number, rounded_down, rounded_up};
+
 /// The name of the model's unit, where it has one.
 pub type UnitName<'a> = Option<&'a str>;
-
-/// A whole number with separators: `86,412`.
-pub fn count(n: usize) -> String {
-    let digits = n.to_string();
-    let mut out = String::with_capacity(digits.len() * 4 / 3);
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            out.push(',');
-        }
-        out.push(digit);
-    }
-    out
-}
 
 /// `1 triangle`, `2,000 triangles`; the word is given in the singular.
 pub fn plural(n: usize, word: &str) -> String {
@@ -25,44 +14,6 @@ pub fn plural(n: usize, word: &str) -> String {
         word => format!("{word}s"),
     };
     format!("{} {}", count(n), if n == 1 { word } else { &plural })
-}
-
-/// Four significant digits, without an exponent where a person would write none.
-pub fn number(x: f64) -> String {
-    if x == 0.0 || !x.is_finite() {
-        return format!("{}", x + 0.0);
-    }
-    let magnitude = x.abs().log10().floor();
-    if !(-5.0..9.0).contains(&magnitude) {
-        return format!("{x:.3e}");
-    }
-    let decimals = (3.0 - magnitude).max(0.0) as usize;
-    let text = format!("{x:.decimals$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));
-    let (sign, whole) = whole.strip_prefix('-').map_or(("", whole), |w| ("-", w));
-    let whole = whole.parse().map_or_else(|_| whole.to_string(), count);
-    if fraction.is_empty() { format!("{sign}{whole}") } else { format!("{sign}{whole}.{fraction}") }
-}
-
-/// Two significant digits, rounded up, as something one can type: `0.42`, `1300`.
-pub fn rounded_up(x: f64) -> String {
-    significant(x, f64::ceil)
-}
-
-/// Two significant digits, rounded down, as something one can type.
-pub fn rounded_down(x: f64) -> String {
-    significant(x, f64::floor)
-}
-
-fn significant(x: f64, round: fn(f64) -> f64) -> String {
-    if !(x.is_finite() && x > 0.0) {
-        return x.to_string();
-    }
-    let exponent = x.log10().floor() as i32 - 1;
-    // A number such as 0.3 must not become 0.31 by the error of the division.
-    let digits = (x / 10_f64.powi(exponent) * 1e6).round() / 1e6;
-    format!("{}e{exponent}", round(digits)).parse::<f64>().map_or_else(|_| x.to_string(), |v| v.to_string())
 }
 
 /// A number with the unit behind it, where there is one.
@@ -164,6 +115,8 @@ mod tests {
         assert_eq!(rounded_up(1234.0), "1300");
         assert_eq!(rounded_down(0.0999), "0.099");
         assert_eq!(rounded_down(0.3), "0.3");
+        assert_eq!(rounded_up(1.234e-12), "1.3e-12");
+        assert_eq!([25.4, 1.0 / 25.4, 1e-3].map(factor), ["25.4", "0.0393701", "0.001"]);
     }
 
     #[test]

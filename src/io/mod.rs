@@ -51,7 +51,7 @@ pub use colour::{Carried, Colours, Rgba};
 pub use error::{Place, ReadError, ReadProblem, WriteError, WriteProblem};
 pub use format::{Format, UnknownFormat};
 pub use grids::{
-    BLOCK_SIDE, BLOCK_VOXELS, Block, BlockValues, DistanceSamples, GridFile, GridFormat, GridReadError,
+    BLOCK_SIDE, BLOCK_VOXELS, Block, BlockValues, DistanceSamples, GridFile, GridFormat, GridMeasures, GridReadError,
     GridReadProblem, GridValues, SampleBlocks, SparseValues, Tile, UnknownGridFormat, encode_grid, read_grid,
     read_grid_bytes, read_grid_within, write_grid,
 };
@@ -103,8 +103,8 @@ pub struct WriteOptions {
     pub format: Format,
     /// STL and PLY as text. The other formats have one form each.
     pub ascii: bool,
-    /// The unit of length of the coordinates. 3MF states it; glTF, whose own unit is the metre,
-    /// keeps it as a note. The other formats have no place for it. Coordinates are never scaled.
+    /// The unit of length of the coordinates. 3MF states it; glTF is in metres, so its one node scales them to metres.
+    /// The other formats have no place for it. Without a unit coordinates are written as they are.
     pub unit: Option<Unit>,
 }
 
@@ -112,6 +112,24 @@ impl WriteOptions {
     /// The usual form of `format`, without a unit.
     pub fn new(format: Format) -> Self {
         Self { format, ascii: false, unit: None }
+    }
+
+    /// What a reader of the file finds coordinates multiplied by: lengths with a unit become metres in glTF.
+    pub fn factor(&self) -> f64 {
+        match (self.format, self.unit) {
+            (Format::Glb | Format::Gltf, Some(unit)) => unit.metres(),
+            _ => 1.0,
+        }
+    }
+
+    /// The unit in which a reader takes the file: glTF is always in metres, and a 3MF file that states none in millimetres. For
+    /// formats without a place for it, the unit of the coordinates.
+    pub fn unit_in_file(&self) -> Option<Unit> {
+        match self.format {
+            Format::Glb | Format::Gltf => Some(Unit::Metre),
+            Format::ThreeMf => self.unit.or(Some(Unit::Millimetre)),
+            Format::Stl | Format::Obj | Format::Ply | Format::Off => self.unit,
+        }
     }
 }
 

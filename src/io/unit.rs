@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// A unit of length. The program never rescales: a unit is carried along and stated, no more.
+/// A unit of length.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Unit {
     /// 10⁻⁶ m.
@@ -76,10 +76,15 @@ pub struct UnknownUnit(pub String);
 impl FromStr for Unit {
     type Err = UnknownUnit;
 
-    /// Symbols (`mm`) and words (`millimeter`, `millimetre`), in any case.
+    /// Symbols (`mm`) and words (`millimeter`, `millimetres`), in any case, one or several.
     fn from_str(text: &str) -> Result<Self, UnknownUnit> {
-        let word = text.trim().to_ascii_lowercase();
-        match word.strip_suffix("re").map(|stem| format!("{stem}er")).as_deref().unwrap_or(&word) {
+        let word = text.trim().trim_end_matches('.').to_ascii_lowercase();
+        let word = match word.as_str() {
+            "inches" => "inch",
+            "feet" => "foot",
+            word => word.strip_suffix('s').filter(|one| one.len() > 2).unwrap_or(word),
+        };
+        match word.strip_suffix("re").map(|stem| format!("{stem}er")).as_deref().unwrap_or(word) {
             "um" | "µm" | "μm" | "micron" | "micrometer" => Ok(Self::Micrometre),
             "mm" | "millimeter" => Ok(Self::Millimetre),
             "cm" | "centimeter" => Ok(Self::Centimetre),
@@ -101,7 +106,19 @@ mod tests {
             assert_eq!(unit.symbol().parse(), Ok(unit));
             assert_eq!(unit.word().to_uppercase().parse(), Ok(unit));
         }
-        assert_eq!("millimetre".parse(), Ok(Unit::Millimetre));
+        for (text, unit) in [
+            ("millimetre", Unit::Millimetre),
+            ("Millimeters", Unit::Millimetre),
+            ("millimetres", Unit::Millimetre),
+            ("microns", Unit::Micrometre),
+            ("inches", Unit::Inch),
+            ("in.", Unit::Inch),
+            ("feet", Unit::Foot),
+            (" metres ", Unit::Metre),
+        ] {
+            assert_eq!(text.parse(), Ok(unit), "{text}");
+        }
+        assert!("s".parse::<Unit>().is_err() && "ms".parse::<Unit>().is_err());
         assert_eq!("furlong".parse::<Unit>(), Err(UnknownUnit("furlong".into())));
     }
 }

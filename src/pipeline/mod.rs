@@ -37,6 +37,7 @@ pub use field::{
 pub use crumbs::{Dropped, drop_smaller};
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
 pub use plan::{plan, plan_canals, plan_morphology, plan_thicken};
+pub use prepare::MAX_RESOLUTION;
 pub use report::{LdiReport, Report, StageTime, ThinRegion, ThinReport};
 pub use thicken::{SheetSide, ThickenOptions, ThickenReport, thicken};
 pub use thickness::{LengthsReport, ThicknessReport, thickness};

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::frame::Frame;
 use super::{Error, VoxelSize};
+use crate::digits;
 use crate::lattice::Lattice;
 use crate::ldi::{Layers, MAX_VOXELS, Operands};
 use crate::mesh::{Bounds, Plane, TriMesh};
@@ -14,6 +15,17 @@ use crate::progress::{Progress, Stopped};
 const LARGEST_COORDINATE: f64 = 1e15;
 /// The voxel size must be this many times the spacing of `f32` numbers at the farthest coordinate.
 const F32_STEPS: f64 = 64.0;
+
+/// The most voxels along the longest side of a box: what the rays can number, less room around it.
+pub const MAX_RESOLUTION: u32 = MAX_VOXELS as u32 - 16;
+
+/// The finest voxel that a lattice around `bounds` can have, model units.
+pub(super) fn finest(bounds: &Bounds) -> f64 {
+    let near = Frame::around(bounds).local_bounds(bounds);
+    let farthest = near.min.abs().max(near.max.abs()).max_element();
+    let numbered = bounds.size().max_element() / f64::from(MAX_RESOLUTION);
+    numbered.max(F32_STEPS * farthest * f64::from(f32::EPSILON))
+}
 
 /// The operands, cleaned, made consistent, and put one after another.
 #[derive(Clone)]
@@ -116,7 +128,7 @@ pub(super) fn spacing(bounds: &Bounds, voxel: VoxelSize) -> Result<f64, Error> {
     if h > 0.0 && h.is_finite() {
         return Ok(h);
     }
-    Err(Error::VoxelSize { reason: format!("a voxel size of {h} cannot be used; it must be a positive length") })
+    Err(Error::VoxelSize { reason: format!("a voxel of {h} cannot be used; its size must be above zero") })
 }
 
 /// The lattice for operands in `bounds`, or why there is none.
@@ -127,27 +139,19 @@ pub(super) fn lattice(bounds: &Bounds, voxel: VoxelSize) -> Result<Lattice, Erro
     if farthest > LARGEST_COORDINATE {
         return refuse(format!(
             "coordinates reach {farthest:.3e}, which cannot be meant in any unit: \
-             look for damaged vertices, or scale the model down"
+             look for damaged vertices, or make the model smaller"
         ));
     }
     let h = spacing(bounds, voxel)?;
-    let coarsest = longest / (MAX_VOXELS - 16) as f64;
-    if h < coarsest {
+    let finest = finest(bounds);
+    // A resolution that is allowed must not fail by the rounding of its division.
+    if h < finest * (1.0 - 1e-12) {
+        let (asked, least) = (digits::number(h), digits::rounded_up(finest));
+        let [sides, most] = [longest / h, longest / finest].map(|count| digits::count(count as usize));
         return refuse(format!(
-            "a voxel of {h} makes {:.0} voxels along the longest side ({longest}); \
-             at most {} are possible: use a voxel of at least {coarsest:.4e}",
-            longest / h,
-            MAX_VOXELS - 16,
-        ));
-    }
-    let near = Frame::around(bounds).local_bounds(bounds);
-    let farthest = near.min.abs().max(near.max.abs()).max_element();
-    let step = farthest * f64::from(f32::EPSILON);
-    if h < F32_STEPS * step {
-        return refuse(format!(
-            "a voxel of {h:.4e} is finer than single precision resolves a model of this size, which is {step:.1e}: \
-             use a voxel of at least {:.1e}",
-            F32_STEPS * step
+            "a voxel of {asked} makes {sides} voxels along the longest side of the model ({}), and {most} are possible: \
+             use a voxel of at least {least}",
+            digits::number(longest),
         ));
     }
     Ok(Lattice::around(bounds, h))

@@ -40,9 +40,10 @@ impl Job<'_> {
         stages: &mut Stages<'_>,
     ) -> Result<Option<Outcome>, Error> {
         let cells = plan::area(&rest.mesh) / (self.h * self.h);
+        let finest = rest.mesh.bounds().map_or(0.0, |bounds| prepare::finest(&bounds));
         for halvings in 0..=MOST_HALVINGS {
             let finer = f64::from(1 << halvings);
-            if halvings > 0 && cells * finer * finer > MOST_CELLS {
+            if halvings > 0 && (cells * finer * finer > MOST_CELLS || self.h / finer < finest) {
                 break;
             }
             let made = self.if_any(&rest, self.h / finer, stages)?;
@@ -106,14 +107,14 @@ impl Job<'_> {
         let mut raw = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;
         if raw.mesh.triangles.is_empty() {
             return Err(Error::NothingEnclosed {
-                reason: solid::why_nothing(&spans, &lattice, hits, soup.operands.count()),
+                reason: solid::why_nothing(&spans, [h, prepare::finest(&bounds)], hits, soup.operands.count()),
             });
         }
         let lids = refine::lids(&mut raw, (&soup, &lattice), &winding, expression, progress)?;
         stages.begin("collapse")?;
         let facets = Facets::new(&soup.mesh, lids).with_classes(soup.classes(&options.classes));
         let mut surface = refine::merged(raw, &facets, &lattice, options, progress)?;
-        let mut report = solid::report(&lattice, &spans, hits, &votes);
+        let mut report = solid::report(&lattice, prepare::finest(&bounds), &spans, hits, &votes);
         if let Some(options) = &options.fit {
             stages.begin("fit")?;
             let (fit, account) = fit(&surface, &facets, &evidence, lattice.h, options, progress)?;

@@ -99,7 +99,8 @@ pub struct ThinReport {
     pub thin_gaps: usize,
     /// The 1st percentile of the span lengths, model units.
     pub thinnest: Option<f64>,
-    /// A voxel size, model units, that would hold 99 % of the spans; `None` when all are held.
+    /// A voxel size, model units, that would hold 99 % of the spans; `None` when all are held, and when no possible
+    /// voxel is small enough.
     pub voxel_that_keeps: Option<f64>,
     /// Where walls and gaps are thinner than 2 h, the largest such places first.
     pub regions: Vec<ThinRegion>,

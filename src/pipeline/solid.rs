@@ -3,6 +3,7 @@
 use glam::IVec3;
 
 use super::{Error, LdiReport, Report, ThinRegion, ThinReport};
+use crate::digits;
 use crate::contour::{Crossing, Edge, NO_TRIANGLE};
 use crate::fit::{NOT_KEPT, Surface};
 use crate::lattice::{Grid, Lattice};
@@ -45,7 +46,8 @@ pub(super) fn crossings<'a>(
 }
 
 /// The parts of the report that come from the rays and the votes.
-pub(super) fn report(lattice: &Lattice, spans: &[Spans], count: Count, votes: &Grid<Votes>) -> Report {
+/// `finest`: the smallest voxel that is possible, model units.
+pub(super) fn report(lattice: &Lattice, finest: f64, spans: &[Spans], count: Count, votes: &Grid<Votes>) -> Report {
     let lengths = lengths(spans);
     Report {
         voxel: lattice.h,
@@ -58,12 +60,12 @@ pub(super) fn report(lattice: &Lattice, spans: &[Spans], count: Count, votes: &G
             ..LdiReport::default()
         },
         vote: doubts(votes, lattice),
-        thin: thin(&lengths, lattice.h),
+        thin: thin(&lengths, lattice.h, finest),
         ..Report::default()
     }
 }
 
-fn thin(lengths: &Lengths, h: f64) -> ThinReport {
+fn thin(lengths: &Lengths, h: f64, finest: f64) -> ThinReport {
     let shorter = |sorted: &[f64]| sorted.partition_point(|&length| length < THIN);
     let percentile = lengths.spans.get(lengths.spans.len() / 100).map(|voxels| voxels * h);
     let thin_spans = shorter(&lengths.spans);
@@ -73,7 +75,7 @@ fn thin(lengths: &Lengths, h: f64) -> ThinReport {
         lost_spans: lengths.lost,
         thin_gaps: shorter(&lengths.gaps),
         thinnest: percentile,
-        voxel_that_keeps: percentile.filter(|_| thin_spans > 0).map(|length| length / THIN),
+        voxel_that_keeps: percentile.filter(|_| thin_spans > 0).map(|length| length / THIN).filter(|&h| h >= finest),
         regions: Vec::new(),
     }
 }
@@ -130,7 +132,11 @@ pub(super) fn warnings(report: &Report) -> Vec<String> {
 fn keeping_voxel(thin: &ThinReport) -> String {
     match (thin.thinnest, thin.voxel_that_keeps) {
         (Some(thinnest), Some(voxel)) => {
-            format!("; the thinnest 1 % are at most {thinnest:.4} thick: a voxel of {voxel:.4} would hold them")
+            let [thinnest, voxel] = [digits::number(thinnest), digits::rounded_down(voxel)];
+            format!("; the thinnest 1 % are at most {thinnest} thick: a voxel of {voxel} would hold them")
+        }
+        (Some(thinnest), None) if thin.thin_spans > 0 => {
+            format!("; the thinnest 1 % are at most {} thick, too thin for any voxel", digits::number(thinnest))
         }
         _ => String::new(),
     }
@@ -154,19 +160,19 @@ pub(super) fn refuse_scattered(spans: &[Spans], count: Count) -> Result<(), Erro
     Err(Error::NothingEnclosed { reason })
 }
 
-/// Why the result has no inside, in one sentence, with what to try.
-pub(super) fn why_nothing(spans: &[Spans], lattice: &Lattice, count: Count, operands: usize) -> String {
+/// Why the result has no inside, in one sentence, with what to try. The voxel and the smallest possible one, model units.
+pub(super) fn why_nothing(spans: &[Spans], [h, finest]: [f64; 2], count: Count, operands: usize) -> String {
     let silent: usize = spans.iter().map(|s| s.silent_rays).sum();
     let lengths = lengths(spans);
-    let lost = thin(&lengths, lattice.h);
+    let lost = thin(&lengths, h, finest);
     if 2 * silent > count.rays {
         return "the surface encloses nothing: most rays that meet it pass an open sheet; close or thicken it first"
             .into();
     }
     if !lengths.spans.is_empty() {
         return format!(
-            "no voxel lies inside: the walls are thinner than the voxel size of {:.4}{}",
-            lattice.h,
+            "no voxel lies inside: the walls are thinner than a voxel of {}{}",
+            digits::number(h),
             keeping_voxel(&lost)
         );
     }

@@ -8,6 +8,7 @@ use super::frame::Frame;
 use super::morphology::{Run, usable, volume};
 use super::plan::{Offsets, area, check_offsets};
 use super::{Error, MorphologyOptions, Options, Outcome, TriangleSource, VoxelSize, boolean, prepare, stages};
+use crate::digits;
 use crate::ldi::Expression;
 use crate::mesh::{Pseudonormals, TriMesh};
 use crate::morphology::{Body, Operation, middles};
@@ -75,18 +76,24 @@ pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -
     let bounds = prepare::bounds(std::slice::from_ref(input))?;
     let h = prepare::lattice(&bounds, options.solid.voxel)?.h;
     if least < LEAST_VOXELS * h {
-        let fits = least / LEAST_VOXELS;
-        return Err(Error::VoxelSize {
-            reason: format!("walls of {least} need a voxel of at most {fits:.4}, and it is {h:.4}"),
-        });
+        let (fits, finest) = (least / LEAST_VOXELS, prepare::finest(&bounds));
+        let [walls, voxel] = [least, h].map(digits::number);
+        let possible = if fits < finest {
+            format!("{}, which is finer than is possible here: walls of at least {} are", digits::number(fits),
+                digits::rounded_up(LEAST_VOXELS * finest))
+        } else {
+            format!("{}, and it is {voxel}", digits::rounded_down(fits))
+        };
+        return Err(Error::VoxelSize { reason: format!("walls of {walls} need a voxel of at most {possible}") });
     }
     let longest = bounds.size().max_element();
     if least > MOST_LENGTHS * longest {
+        let [walls, length] = [least, longest].map(digits::number);
+        let most = digits::rounded_down(MOST_LENGTHS * longest);
         return Err(Error::VoxelSize {
             reason: format!(
-                "walls of {least} are more than {MOST_LENGTHS} times as thick as the model is long ({longest}), so nothing of its \
-                 shape would be left: look at the unit, or use at most {}",
-                MOST_LENGTHS * longest
+                "walls of {walls} are more than {MOST_LENGTHS} times as thick as the model is long ({length}), so nothing of its \
+                 shape would be left: look at the unit, or use at most {most}"
             ),
         });
     }

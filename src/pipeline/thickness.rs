@@ -4,7 +4,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::frame::Frame;
-use super::{Error, Options, plan, prepare, solid};
+use super::prepare::{self, MAX_RESOLUTION};
+use super::{Error, Options, plan, solid};
 use crate::ldi::{Expression, Spans, THIN, ldis, spans, widths};
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
@@ -20,10 +21,13 @@ pub struct ThicknessReport {
     pub gaps: LengthsReport,
     /// Share of the rays that abstain because they meet an open surface.
     pub silent: f64,
-    /// A voxel of which 99 % of the walls and of the gaps are two or more thick; `None` without any.
+    /// A voxel of which 99 % of the walls and of the gaps are two or more thick; `None` without any, and when no
+    /// possible voxel is small enough.
     pub voxel_that_keeps: Option<f64>,
     /// The voxels along the longest side that this makes.
     pub resolution_that_keeps: Option<u32>,
+    /// The smallest voxel that is possible.
+    pub finest: f64,
 }
 
 /// How some lengths are distributed, model units.
@@ -68,10 +72,12 @@ pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Res
     let walls = LengthsReport::of(&found.spans, lattice.h);
     let gaps = LengthsReport::of(&found.gaps, lattice.h);
     let thinnest = [&walls, &gaps].into_iter().filter(|l| l.count > 0).map(|l| l.percentiles[0]).reduce(f64::min);
-    let voxel_that_keeps = thinnest.filter(|&width| width > 0.0).map(|width| width / THIN);
-    let resolution_that_keeps = voxel_that_keeps.map(|voxel| (bounds.size().max_element() / voxel).ceil() as u32);
+    let finest = prepare::finest(&bounds);
+    let voxel_that_keeps = thinnest.map(|width| width / THIN).filter(|&voxel| voxel >= finest);
+    let along = |voxel: f64| (bounds.size().max_element() / voxel).ceil() as u32;
+    let resolution_that_keeps = voxel_that_keeps.map(|voxel| along(voxel).min(MAX_RESOLUTION));
     let silent = silent as f64 / rays.max(1) as f64;
-    Ok(ThicknessReport { voxel: lattice.h, walls, gaps, silent, voxel_that_keeps, resolution_that_keeps })
+    Ok(ThicknessReport { voxel: lattice.h, walls, gaps, silent, voxel_that_keeps, resolution_that_keeps, finest })
 }
 
 impl LengthsReport {

@@ -145,14 +145,15 @@ fn not_gltf(error: &gltf_json::Error) -> ReadError {
     }
 }
 
-/// The note that the writer leaves in `asset.extras`.
+/// The note that the writer of earlier versions left in `asset.extras`, with the numbers in that unit.
 #[derive(serde::Deserialize)]
 struct Note {
     unit: String,
 }
 
-/// Metres, as the specification says, unless a note of ours says otherwise.
+/// Metres, as the specification says, unless an earlier version of this program has noted otherwise.
 fn unit(root: &Root) -> Unit {
-    let note = root.asset.extras.as_ref().and_then(|extras| serde_json::from_str::<Note>(extras.get()).ok());
+    let own = root.asset.generator.as_deref() == Some(env!("CARGO_PKG_NAME"));
+    let note = root.asset.extras.as_ref().filter(|_| own).and_then(|extras| serde_json::from_str::<Note>(extras.get()).ok());
     note.and_then(|note| note.unit.parse().ok()).unwrap_or(Unit::Metre)
 }

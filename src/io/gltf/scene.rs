@@ -265,6 +265,12 @@ impl Reader<'_, '_> {
     }
 }
 
+/// The decimal number that a file has for a scale, which is held in 24 bits: 0.001 and not 0.001000000047, so that millimetres stay
+/// what they are.
+fn as_written(scale: f32) -> f64 {
+    scale.to_string().parse().unwrap_or_else(|_| f64::from(scale))
+}
+
 fn local_transform(node: &Node) -> DMat4 {
     if let Some(matrix) = &node.matrix {
         return DMat4::from_cols_array(&matrix.map(f64::from));
@@ -274,7 +280,7 @@ fn local_transform(node: &Node) -> DMat4 {
     // A quaternion is stored in 24 bits: made a unit again, the transform keeps lengths.
     let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
     DMat4::from_scale_rotation_translation(
-        node.scale.map_or(DVec3::ONE, vector),
+        node.scale.map_or(DVec3::ONE, |scale| DVec3::from(scale.map(as_written))),
         rotation,
         node.translation.map_or(DVec3::ZERO, vector),
     )

@@ -51,9 +51,11 @@ impl<'a> Content<'a> {
         let [positions, indices, colours] = self.sizes();
         let single = self.mesh.positions.iter().map(|p| p.as_vec3().as_dvec3());
         let (min, max) = Bounds::of(single).map_or_else(Default::default, |b| (b.min.to_array(), b.max.to_array()));
-        let mut asset = json!({ "version": "2.0", "generator": "meshwright" });
-        if let Some(unit) = self.unit {
-            asset["extras"] = json!({ "unit": unit.word() });
+        let asset = json!({ "version": "2.0", "generator": "meshwright" });
+        // The numbers stay as they are, to the last bit; the node brings them to metres.
+        let mut node = json!({ "mesh": 0 });
+        if let Some(unit) = self.unit.filter(|unit| *unit != Unit::Metre) {
+            node["scale"] = json!(vec![unit.metres(); 3]);
         }
         let mut buffer = json!({ "byteLength": positions + indices + colours });
         if let Some(uri) = uri {
@@ -64,7 +66,7 @@ impl<'a> Content<'a> {
             "asset": asset,
             "scene": 0,
             "scenes": [{ "nodes": [0] }],
-            "nodes": [{ "mesh": 0 }],
+            "nodes": [node],
             "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
             "accessors": [
                 { "bufferView": 0, "componentType": FLOAT, "count": count, "type": "VEC3", "min": min, "max": max },

@@ -210,3 +210,145 @@ pub(super) fn spacing_of_axes(axes: [[f64; 3]; 3]) -> Result<f64, GridReadProble
     }
     one_spacing([axes[0][0], axes[1][1], axes[2][2]])
 }
+
+/// What the values of a lattice are like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GridMeasures {
+    /// The smallest and the largest value.
+    pub range: [f32; 2],
+    /// Voxels with a value below zero.
+    pub below_zero: u64,
+    /// Voxels whose values are stored one by one.
+    pub stored: u64,
+}
+
+impl GridFile {
+    /// Appends the values of plane `z` to `values`: x changes fastest, then y.
+    pub fn plane(&self, z: usize, values: &mut Vec<f32>) {
+        let points = self.dims[0] * self.dims[1];
+        match &self.values {
+            GridValues::Dense(all) => values.extend(all.iter().skip(z * points).take(points)),
+            GridValues::Sparse(sparse) => {
+                let start = values.len();
+                values.resize(start + points, sparse.background);
+                self.sparse_plane(sparse, z as i32, &mut values[start..]);
+            }
+        }
+    }
+
+    fn sparse_plane(&self, sparse: &SparseValues, z: i32, plane: &mut [f32]) {
+        let [width, height] = [self.dims[0] as i32, self.dims[1] as i32];
+        let row = |y: i32| (y * width) as usize;
+        let crossed = sparse.tiles.iter().filter(|tile| (tile.corner.z..tile.corner.z + tile.length).contains(&z));
+        for tile in crossed {
+            let [low, high] = tile.ends();
+            for y in low.y.max(0)..high.y.min(height) {
+                let (from, to) = (low.x.clamp(0, width), high.x.clamp(0, width));
+                plane[row(y)..][from as usize..to as usize].fill(tile.value);
+            }
+        }
+        let layer = z & !(BLOCK_SIDE - 1);
+        let first = sparse.blocks.partition_point(|block| block.corner.z < layer);
+        for block in sparse.blocks[first..].iter().take_while(|block| block.corner.z == layer) {
+            for y in 0..BLOCK_SIDE {
+                for x in 0..BLOCK_SIDE {
+                    let at = block.corner + IVec3::new(x, y, 0);
+                    if (0..width).contains(&at.x) && (0..height).contains(&at.y) {
+                        plane[row(at.y) + at.x as usize] = block.values[(x + 8 * y + 64 * (z - layer)) as usize];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Looks at all values, those of boxes at once.
+    pub fn measures(&self) -> GridMeasures {
+        let mut found = GridMeasures { range: [f32::INFINITY, f32::NEG_INFINITY], below_zero: 0, stored: 0 };
+        let mut add = |value: f32, count: u64, stored: bool| {
+            if count > 0 {
+                found.range = [found.range[0].min(value), found.range[1].max(value)];
+                found.below_zero += if value < 0.0 { count } else { 0 };
+                found.stored += if stored { count } else { 0 };
+            }
+        };
+        let sparse = match &self.values {
+            GridValues::Dense(values) => {
+                values.iter().for_each(|&value| add(value, 1, true));
+                return found;
+            }
+            GridValues::Sparse(sparse) => sparse,
+        };
+        let dims = IVec3::from(self.dims.map(|count| i32::try_from(count).unwrap_or(i32::MAX)));
+        let within = |low: IVec3, high: IVec3| {
+            let size = (high.min(dims) - low.max(IVec3::ZERO)).max(IVec3::ZERO);
+            size.to_array().iter().map(|&k| k as u64).product::<u64>()
+        };
+        let mut covered = 0;
+        for block in &sparse.blocks {
+            for (n, &value) in (0i32..).zip(block.values.iter()) {
+                let at = block.corner + IVec3::new(n & 7, n >> 3 & 7, n >> 6);
+                let count = within(at, at + 1);
+                covered += count;
+                add(value, count, true);
+            }
+        }
+        for tile in &sparse.tiles {
+            let [low, high] = tile.ends();
+            let count = within(low, high);
+            covered += count;
+            add(tile.value, count, false);
+        }
+        let all: u64 = self.dims.iter().map(|&count| count as u64).product();
+        add(sparse.background, all.saturating_sub(covered), false);
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::GridFormat;
+
+    /// Blocks and tiles that reach beyond the lattice on both sides.
+    fn sparse() -> GridFile {
+        let values = std::array::from_fn(|n| n as f32 - 200.0);
+        let block = |corner: [i32; 3]| Block { corner: IVec3::from(corner), values: Box::new(values) };
+        let tile = |corner: [i32; 3], length, value| Tile { corner: IVec3::from(corner), side: 8, length, value };
+        let mut sparse = SparseValues {
+            blocks: vec![block([8, 8, 8]), block([0, 0, 0]), block([16, 0, 0])],
+            tiles: vec![tile([8, 0, 0], 16, -7.0), tile([0, 16, 8], 8, 9.5)],
+            background: 300.0,
+            shift: IVec3::ZERO,
+        };
+        sparse.sort();
+        GridFile {
+            format: GridFormat::Vdb,
+            origin: DVec3::ZERO,
+            spacing: 1.0,
+            dims: [21, 19, 13],
+            unit: None,
+            band: None,
+            values: GridValues::Sparse(sparse),
+            warnings: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn planes_and_measures_are_what_the_voxels_say() {
+        let file = sparse();
+        let mut all = Vec::new();
+        (0..file.dims[2]).for_each(|z| file.plane(z, &mut all));
+        let [width, height, depth] = file.dims.map(|count| count as i32);
+        let voxels = (0..depth).flat_map(|z| (0..height).flat_map(move |y| (0..width).map(move |x| IVec3::new(x, y, z))));
+        let expected: Vec<f32> = voxels.map(|voxel| file.at(voxel).expect("in the lattice")).collect();
+        assert_eq!(all, expected);
+        let dense = GridFile { values: GridValues::Dense(all.clone()), ..file.clone() };
+        let mut again = Vec::new();
+        (0..dense.dims[2]).for_each(|z| dense.plane(z, &mut again));
+        assert_eq!(again, all);
+        let (found, whole) = (file.measures(), dense.measures());
+        assert_eq!((found.range, found.below_zero), (whole.range, whole.below_zero));
+        assert_eq!(found.below_zero, all.iter().filter(|value| **value < 0.0).count() as u64);
+        assert!(found.stored < whole.stored && whole.stored == all.len() as u64);
+    }
+}

@@ -17,7 +17,7 @@ use std::path::Path;
 use glam::{DVec3, IVec3};
 
 pub use error::{GridReadError, GridReadProblem};
-pub use file::{BLOCK_SIDE, BLOCK_VOXELS, Block, BlockValues, GridFile, GridValues, SparseValues, Tile};
+pub use file::{BLOCK_SIDE, BLOCK_VOXELS, Block, BlockValues, GridFile, GridMeasures, GridValues, SparseValues, Tile};
 use file::{all_finite, one_spacing, spacing_of_axes};
 pub use format::{GridFormat, UnknownGridFormat};
 pub use read::{read_grid, read_grid_bytes, read_grid_within};

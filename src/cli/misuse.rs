@@ -1,0 +1,134 @@
+//! Command lines that are not understood, in words that say what to type.
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Command, CommandFactory};
+
+use super::args::Cli;
+use super::choices::AnyFormat;
+use super::exit::Failure;
+
+/// What is wrong with `arguments` (the program's name left out), where more can be said than the parser's `error` does.
+pub fn explain(error: &clap::Error, arguments: &[OsString]) -> Option<Failure> {
+    let told = |kind| match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text.clone()),
+        _ => None,
+    };
+    let command = Cli::command();
+    let words: Vec<String> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    let Some(verb) = words.iter().find_map(|word| command.find_subcommand(word)) else {
+        let file = words.iter().filter(|word| !word.starts_with('-')).find(|word| is_a_mesh(word))?;
+        return Some(no_verb(file));
+    };
+    match error.kind() {
+        ErrorKind::UnknownArgument => {
+            let extra = told(ContextKind::InvalidArg).filter(|word| !word.starts_with('-'))?;
+            one_too_many(verb, &extra, &words)
+        }
+        ErrorKind::WrongNumberOfValues | ErrorKind::TooFewValues if takes_several(verb) => Some(
+            Failure::usage(format!("`{}` combines two files or more, and one was given", verb.get_name()))
+                .hint("`meshwright repair` makes one solid of all that is in one file"),
+        ),
+        _ => None,
+    }
+}
+
+/// Whether a word is a file, or is named as one.
+fn is_a_mesh(word: &str) -> bool {
+    let path = Path::new(word);
+    AnyFormat::from_path(path).is_some() || path.is_file()
+}
+
+fn no_verb(file: &str) -> Failure {
+    Failure::usage(format!("what to do with {file} is not said: a verb comes first"))
+        .hint(format!("`meshwright repair {file} -o {}` mends it, `meshwright inspect {file}` says what is wrong with it", repaired(file)))
+}
+
+/// `part.stl` as `part_repaired.stl`.
+fn repaired(file: &str) -> String {
+    let path = Path::new(file);
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let extension = path.extension().map_or("stl".into(), |extension| extension.to_string_lossy());
+    path.with_file_name(format!("{stem}_repaired.{extension}")).display().to_string()
+}
+
+/// Whether a verb takes any number of files.
+fn takes_several(verb: &Command) -> bool {
+    matches!(verb.get_name(), "union" | "intersection" | "difference")
+}
+
+fn one_too_many(verb: &Command, extra: &str, words: &[String]) -> Option<Failure> {
+    let files: Vec<_> = verb.get_positionals().collect();
+    if files.is_empty() || takes_several(verb) || !is_a_mesh(extra) {
+        return None;
+    }
+    let name = verb.get_name();
+    let has_output = words.iter().any(|word| word == "-o" || word.starts_with("--output"));
+    let wants_output = verb.get_arguments().any(|argument| argument.get_id() == "output");
+    if wants_output && !has_output && !Path::new(extra).exists() {
+        return Some(
+            Failure::usage(format!("`{name}` takes its output after -o, and {extra} stands without it"))
+                .hint(format!("-o {extra}")),
+        );
+    }
+    let count = if files.len() == 1 { "one file" } else { "no more than two files" };
+    let failure = Failure::usage(format!("`{name}` takes {count}, and {extra} is one more"));
+    let each = "runs it for each: for f in *.stl; do meshwright";
+    Some(match (name, files.len()) {
+        ("repair", _) => failure.hint(format!(
+            "`meshwright union` makes one solid of several files; the shell {each} repair \"$f\" -o \"repaired/$f\"; done"
+        )),
+        (_, 1) => failure.hint(format!("the shell {each} {name} \"$f\" ...; done")),
+        _ => failure,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    fn explained(line: &str) -> String {
+        let arguments: Vec<OsString> = line.split_whitespace().map(OsString::from).collect();
+        let error = Cli::try_parse_from(std::iter::once(OsString::from("meshwright")).chain(arguments.clone()))
+            .expect_err("it is no command line");
+        explain(&error, &arguments).map_or(String::new(), |f| format!("{}\n{}", f.message, f.hint.unwrap_or_default()))
+    }
+
+    #[test]
+    fn what_to_type_is_said() {
+        for (line, words) in [
+            ("part.stl", "meshwright repair part.stl -o part_repaired.stl"),
+            ("-o fixed.stl sub/part.3mf", "meshwright inspect fixed.stl"),
+            ("repair a.stl b.stl -o c.stl", "meshwright union"),
+            ("fix a.stl b.stl c.stl -o d.stl", "`repair` takes one file, and b.stl is one more"),
+            ("repair a.stl b.stl", "-o b.stl"),
+            ("inspect a.stl b.stl", "for f in *.stl; do meshwright inspect"),
+            ("compare a.stl b.stl c.stl", "no more than two files"),
+            ("union a.stl -o b.stl", "meshwright repair"),
+            ("subtract a.stl -o b.stl", "`difference` combines two files or more"),
+        ] {
+            assert!(explained(line).contains(words), "{line}: {}", explained(line));
+        }
+        for line in ["mend x", "repair a.stl --wrong -o b.stl", "repair a.stl -o", "union --resolution 7"] {
+            assert_eq!(explained(line), "", "{line}");
+        }
+    }
+
+    #[test]
+    fn words_that_people_type_are_verbs() {
+        for (word, verb) in [
+            ("fix", "repair"),
+            ("subtract", "difference"),
+            ("intersect", "intersection"),
+            ("merge", "union"),
+            ("info", "inspect"),
+            ("grow", "dilate"),
+            ("shrink", "erode"),
+        ] {
+            assert_eq!(Cli::command().find_subcommand(word).map(|found| found.get_name().to_string()), Some(verb.into()));
+        }
+    }
+}
