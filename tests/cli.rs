@@ -8,6 +8,8 @@ mod faults;
 mod fields;
 #[path = "cli/files.rs"]
 mod files;
+#[path = "cli/maps.rs"]
+mod maps;
 #[path = "cli/readers.rs"]
 mod readers;
 #[path = "cli/sdf.rs"]

@@ -22,6 +22,7 @@ mod inspect;
 mod length;
 mod limits;
 mod machine;
+mod map;
 mod morphology;
 mod negative;
 mod output;

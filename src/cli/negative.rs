@@ -27,7 +27,7 @@ pub fn as_operands(inputs: &mut Vec<Input>, expression: &Expression) -> Expressi
             ..inputs[n].entry.clone()
         };
         let (mesh, parts) = (negative.mesh, negative.parts);
-        let loaded = Loaded { mesh, colours: None, format, unit, parts, negative: None, warnings: Vec::new() };
+        let loaded = Loaded { mesh, colours: None, legend: Vec::new(), format, unit, parts, negative: None, warnings: Vec::new() };
         inputs.push(Input { label, loaded, entry });
     }
     without(expression, &negative_of)
@@ -70,6 +70,7 @@ pub fn carved(
     let loaded = Loaded {
         mesh: outcome.mesh,
         colours,
+        legend: Vec::new(),
         format: own.loaded.format,
         unit: own.loaded.unit,
         parts: own.loaded.parts.clone(),

@@ -10,15 +10,15 @@ use super::change::{self, Change, Changed};
 use super::exit::{Asked, Exit, Failure};
 use super::input::{self, Input};
 use super::length::{Scale, Simplify};
-use super::output::{self, Target, write_verified};
+use super::output::{Target, write_verified};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
-use super::{backend, limits, machine, negative, summary, words};
+use super::{backend, limits, machine, map, negative, summary, words};
 use crate::fit::{FitOptions, rounded};
-use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
+use crate::io::{Colours, Format, Loaded, Unit};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
-use crate::pipeline::{self, Options, Outcome, Precision, TriangleSource, VoxelSize};
+use crate::pipeline::{self, Options, Precision, VoxelSize};
 use crate::sdf::{RobustOptions, Trust};
 use crate::vote::VoteRule;
 
@@ -201,12 +201,12 @@ fn make(
         Some(change) => change.apply(&meshes[0], options, scale, session, report)?,
     };
     let Changed { outcome, canal_of } = made.map_err(|e| failure(&e, inputs, unit, args))?;
-    drop(meshes);
     report.stages.extend(outcome.report.stages.iter().cloned());
     report.warnings.extend(outcome.report.warnings.iter().cloned());
     if let Some(path) = &args.map {
-        report.timed("map", |_| write_map(path, &outcome, &canal_of, session))?;
+        report.timed("map", |_| map::write(path, &outcome, &meshes, &canal_of, session))?;
     }
+    drop(meshes);
     report.pipeline = Some(outcome.report.clone());
     if let Some(target) = target {
         let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
@@ -260,35 +260,6 @@ fn rounding(moved: f64, format: Format) -> String {
         "{format} holds single precision: so far from the origin it moves vertices by up to {}; OBJ, PLY, OFF and 3MF keep them",
         words::number(moved)
     )
-}
-
-/// What is original, and what closes a hole.
-const ORIGINAL: Rgba = [205, 210, 215, 255];
-const MADE_UP: Rgba = [220, 60, 40, 255];
-
-/// Walls of canals, by their numbers.
-const CANALS: [Rgba; 6] = [
-    [220, 60, 40, 255],
-    [40, 120, 220, 255],
-    [240, 160, 30, 255],
-    [60, 160, 70, 255],
-    [150, 80, 190, 255],
-    [0, 170, 180, 255],
-];
-
-/// Writes the result coloured by where its triangles come from, and by the canals that they bound.
-fn write_map(path: &Path, outcome: &Outcome, canal_of: &[u32], session: &Session) -> Result<(), Failure> {
-    let colour = |(t, source): (usize, &TriangleSource)| match (canal_of.get(t), source) {
-        (Some(&canal), _) if canal > 0 => CANALS[(canal as usize - 1) % CANALS.len()],
-        (_, TriangleSource::Closed) => MADE_UP,
-        _ => ORIGINAL,
-    };
-    let colours = Colours::Faces(outcome.sources.iter().enumerate().map(colour).collect());
-    session.progress.check()?;
-    let mut bytes = Vec::new();
-    io::encode_coloured(&outcome.mesh, Some(&colours), &WriteOptions::new(Format::Ply), &mut bytes)
-        .map_err(|error| output::unencoded(path, &error))?;
-    output::write_side(path, &bytes, session)
 }
 
 /// Whether the file as read back holds the mesh that was made, and keeps the program's promise. `moved`: how far rounding to the

@@ -55,7 +55,7 @@ pub use grids::{
     GridReadProblem, GridValues, SampleBlocks, SparseValues, Tile, UnknownGridFormat, encode_grid, read_grid,
     read_grid_bytes, read_grid_within, write_grid,
 };
-pub use ply::{VertexMap, encode_vertex_map};
+pub use ply::{FaceMap, LegendEntry, VertexMap, encode_face_map, encode_vertex_map};
 pub use save::save_bytes;
 pub use unit::{Unit, UnknownUnit};
 
@@ -84,6 +84,8 @@ pub struct Loaded {
     pub mesh: TriMesh,
     /// The colours of `mesh`, one for each triangle, vertex or corner; `None` where the file has none.
     pub colours: Option<Colours>,
+    /// What the file says that its colours mean: a map in PLY.
+    pub legend: Vec<LegendEntry>,
     /// The format that was found.
     pub format: Format,
     /// The unit of length that the file states.

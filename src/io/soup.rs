@@ -115,7 +115,16 @@ impl Soup {
         self.triangles.shrink_to_fit();
         let mesh = TriMesh { positions: self.positions, triangles: self.triangles };
         let colours = self.colours.finish(&mesh, &mut self.warnings);
-        Ok(Loaded { mesh, colours, format, unit, parts: self.parts, negative: None, warnings: self.warnings })
+        Ok(Loaded {
+            mesh,
+            colours,
+            legend: Vec::new(),
+            format,
+            unit,
+            parts: self.parts,
+            negative: None,
+            warnings: self.warnings,
+        })
     }
 
     /// The finished mesh of what is taken away from another; `None` when there is nothing of it.

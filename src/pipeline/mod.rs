@@ -7,6 +7,7 @@ mod colours;
 mod distance;
 mod field;
 mod frame;
+mod kind;
 mod morphology;
 mod order;
 mod plan;
@@ -33,6 +34,7 @@ pub use field::{
     Built, FieldBand, FieldBuilder, FieldReport, Operand, OperandReport, field_grid, field_spacing, field_surface,
     field_values,
 };
+pub use kind::{TriangleCounts, TriangleKind, kinds};
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
 pub use plan::{plan, plan_canals, plan_morphology, plan_thicken};
 pub use report::{LdiReport, Report, StageTime, ThinRegion, ThinReport};
@@ -313,5 +315,5 @@ fn evaluate(
             }
         },
     };
-    Ok(frame.global(report::finished(outcome, &apart, stages)))
+    Ok(frame.global(kind::counted(report::finished(outcome, &apart, stages), operands)))
 }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::frame::Frame;
 use super::plan::{Offsets, check_offsets};
-use super::{Error, Options, Outcome, TriangleSource, boolean, prepare, refine, stages};
+use super::{Error, Options, Outcome, TriangleSource, boolean, kind, prepare, refine, stages};
 use crate::fit::{Facets, FitOptions, FitReport, Surface, Wanted, fit};
 use crate::lattice::Lattice;
 use crate::ldi::{Evidence, Expression};
@@ -61,7 +61,7 @@ pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progr
         Operation::Close => run.there_and_back(radius, &mut stages)?,
         Operation::Open => run.there_and_back(-radius, &mut stages)?,
     };
-    Ok(frame.global(run.finish(&outcome, made, stages)))
+    Ok(frame.global(kind::counted(run.finish(&outcome, made, stages), std::slice::from_ref(input))))
 }
 
 /// A radius, or why it is none.

@@ -1,6 +1,7 @@
 //! The header: what elements there are and how their rows are laid out.
 
 use super::super::error::{ReadError, ReadProblem};
+use super::legend::LegendEntry;
 use super::super::text::{Words, integer, quoted, quoted_or_end};
 
 /// How the data after the header is stored.
@@ -73,6 +74,8 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
+    /// What comments say of the colours.
+    pub(super) legend: Vec<LegendEntry>,
     /// Lines of the header.
     pub(super) lines: usize,
     /// Bytes of the header.
@@ -90,6 +93,7 @@ impl Header {
         let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
+        let mut legend = Vec::new();
         let mut used = 0;
         for (i, raw) in bytes.split_inclusive(|&b| b == end).enumerate() {
             used += raw.len();
@@ -111,9 +115,10 @@ impl Header {
                 }
                 Some(b"end_header") => {
                     let encoding = encoding.ok_or_else(|| fail("a `format` line in the header", "none".into()))?;
-                    return Ok(Self { encoding, elements, lines: at, bytes: used });
+                    return Ok(Self { encoding, elements, legend, lines: at, bytes: used });
                 }
-                None | Some(b"comment" | b"obj_info") => {}
+                Some(b"comment") => LegendEntry::gather(words.rest(), &mut legend),
+                None | Some(b"obj_info") => {}
                 Some(word) => return Err(fail("a line of the header", quoted(word))),
             }
         }

@@ -1,7 +1,9 @@
 //! PLY: a header that declares elements and their properties, then the data, as text or binary.
 
 mod colour;
+mod face_map;
 mod header;
+mod legend;
 mod rows;
 mod vertex_map;
 mod write;
@@ -15,6 +17,8 @@ use super::error::{ReadError, ReadProblem};
 use super::soup::{Soup, too_many_vertices};
 use super::{Format, Loaded};
 
+pub use face_map::{FaceMap, encode_face_map};
+pub use legend::LegendEntry;
 pub use vertex_map::{VertexMap, encode_vertex_map};
 pub(super) use write::{write_ascii, write_binary};
 
@@ -44,7 +48,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
     for (element, faces, mut rows) in waiting {
         faces.read(element, &mut rows, &mut soup)?;
     }
-    soup.finish(Format::Ply, None)
+    let loaded = soup.finish(Format::Ply, None)?;
+    Ok(Loaded { legend: header.legend, ..loaded })
 }
 
 fn read_vertices(element: &Element, rows: &mut Rows<'_>, soup: &mut Soup) -> Result<(), ReadError> {
