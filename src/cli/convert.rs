@@ -6,10 +6,11 @@ use super::args::ConvertArgs;
 use super::exit::{Exit, Failure};
 use super::input;
 use super::output::{Target, write_verified};
+use super::paint::{self, Arranged};
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
 use super::words;
-use crate::io::{Carried, Colours, Format, Loaded};
+use crate::io::{Loaded, Paint};
 use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
 
 /// Reads one file and writes it again.
@@ -29,13 +30,15 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     if input.loaded.parts.len() > 1 {
         report.warnings.push(format!("the {} objects of the input become one", input.loaded.parts.len()));
     }
-    let lost = |colours| lost_colours(colours, &input.loaded.mesh, target.options.format);
-    report.warnings.extend(input.loaded.colours.as_ref().and_then(lost));
-    let before = state(&input.loaded.mesh, session)?;
+    let Loaded { mesh, colours, texture, .. } = &input.loaded;
+    let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
+    report.warnings.extend(paint::lost(mesh, &paint, &target));
+    let before = state(mesh, session)?;
+    let arranged = Arranged::new(mesh, &paint, target.options.format);
     let (entry, after) = report.timed("write and verify", |_| {
-        write_verified(&target, &input.loaded.mesh, input.loaded.colours.as_ref(), session, |read| {
-            check_close(read, &input.loaded.mesh)?;
-            check_colours(read, &input.loaded)?;
+        write_verified(&target, &arranged.mesh, arranged.paint(), session, |read| {
+            check_close(read, &arranged.mesh)?;
+            paint::check_colours(read, &arranged.mesh, &arranged.paint())?;
             state(&read.mesh, session)
         })
     })?;
@@ -70,29 +73,6 @@ fn check_close(read: &Loaded, mesh: &TriMesh) -> Result<(), Failure> {
             (0..3).all(|i| close(a[i], b[i]))
         });
     if same { Ok(()) } else { Err(Failure::internal("the file does not hold what was written to it; it was removed")) }
-}
-
-/// Whether the file has the colours, where its format holds them.
-fn check_colours(read: &Loaded, given: &Loaded) -> Result<(), Failure> {
-    let Some(colours) = &given.colours else { return Ok(()) };
-    let same = |found: &Colours| {
-        (0..given.mesh.triangles.len()).all(|t| colours.corners(&given.mesh, t) == found.corners(&read.mesh, t))
-    };
-    match colours.carried_by(read.format, &given.mesh) {
-        Carried::Wholly if !read.colours.as_ref().is_some_and(same) => {
-            Err(Failure::internal("the file does not hold the colours that were written to it; it was removed"))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// What becomes of colours that the format has no place for.
-pub(super) fn lost_colours(colours: &Colours, mesh: &TriMesh, format: Format) -> Option<String> {
-    match colours.carried_by(format, mesh) {
-        Carried::Wholly => None,
-        Carried::Roughly => Some(format!("{format} has no place for colours of this kind; they were averaged")),
-        Carried::Not => Some(format!("{format} holds no colours; they are left out")),
-    }
 }
 
 /// What the rounding to the format's numbers made worse.

@@ -26,6 +26,7 @@ mod map;
 mod morphology;
 mod negative;
 mod output;
+mod paint;
 mod progress_bar;
 mod render;
 mod repair;
@@ -49,7 +50,7 @@ use crate::ldi::Expression;
 use crate::morphology::Operation;
 use args::{Cli, CommonArgs, SolidArgs, Verb};
 use exit::{Exit, Failure};
-use files::Made;
+use files::{KeptFiles, Made};
 use report::RunReport;
 use session::{Session, print_failure};
 
@@ -216,7 +217,10 @@ impl<'a> Job<'a> {
 fn run(mut job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<Exit, Failure>) -> Exit {
     let ready = job.check().and_then(|()| Session::new(job.common, job.max_memory));
     let session = match ready {
-        Ok(session) => session,
+        Ok(mut session) => {
+            session.kept = KeptFiles::of(&job.inputs, &job.made);
+            session
+        }
         Err(failure) => {
             print_failure(&failure);
             return failure.exit;

@@ -1,5 +1,6 @@
 //! `render IN [AFTER] -o PNG`.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use glam::DVec3;
@@ -15,7 +16,7 @@ use super::output::write_side;
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
 use super::slice::{self, Field, SliceChoice, failure};
-use crate::io::LegendEntry;
+use crate::io::{Colours, LegendEntry, shown_colours};
 use crate::picture::{EdgeDrawing, Image, Painted, RenderOptions, View, draw_legend, render, render_pair};
 
 /// Draws one mesh or slice, or two on one sheet.
@@ -126,19 +127,22 @@ fn surfaces(meshes: &[&Input], options: &RenderOptions, session: &Session) -> Re
         draw_legend(&mut image, &input.loaded.legend);
         image
     };
+    let colours: Vec<_> = meshes.iter().map(|input| shown(input)).collect();
+    let painted = |n: usize| Painted { mesh: &meshes[n].loaded.mesh, colours: colours[n].as_deref() };
     let drawn = match meshes {
-        [before, after, ..] => {
-            render_pair(painted(before), painted(after), options, &session.progress).map(|images| images.to_vec())
+        [_, _, ..] => {
+            render_pair(painted(0), painted(1), options, &session.progress).map(|images| images.to_vec())
         }
-        [one] => render(painted(one), options, &session.progress).map(|image| vec![image]),
+        [_] => render(painted(0), options, &session.progress).map(|image| vec![image]),
         [] => Ok(Vec::new()),
     };
     let images = drawn.map_err(failure)?;
     Ok(images.into_iter().zip(meshes).map(with_legend).collect())
 }
 
-fn painted(input: &Input) -> Painted<'_> {
-    Painted { mesh: &input.loaded.mesh, colours: input.loaded.colours.as_ref() }
+/// The colours that the mesh shows without its images.
+fn shown(input: &Input) -> Option<Cow<'_, Colours>> {
+    shown_colours(input.loaded.colours.as_ref(), input.loaded.texture.as_ref())
 }
 
 fn options(args: &RenderArgs) -> RenderOptions {

@@ -11,11 +11,12 @@ use super::exit::{Asked, Exit, Failure};
 use super::input::{self, Input};
 use super::length::{Scale, Simplify};
 use super::output::{Target, write_verified};
+use super::paint::{self, Arranged};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
 use super::{backend, limits, machine, map, negative, summary, words};
 use crate::fit::{FitOptions, rounded};
-use crate::io::{Colours, Format, Loaded, Unit};
+use crate::io::{Colours, Format, Loaded, Paint, Unit};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
 use crate::pipeline::{self, Options, Precision, VoxelSize};
@@ -79,12 +80,13 @@ fn options(
     let scale = Scale { unit, diagonal, voxel: Some(voxel.spacing(longest)) };
     let options = Options {
         fit: fit(args, &scale, inputs)?,
-        classes: inputs.iter().map(|input| pipeline::classes(input.loaded.colours.as_ref())).collect(),
+        classes: inputs.iter().map(Input::classes).collect(),
         orient: args.orient.into(),
         rule: args.vote.into(),
         robust: RobustOptions { trust: trust(args.vote.into()), ..RobustOptions::default() },
         collapse: !args.no_collapse,
-        max_memory: machine::memory_cap(args.max_memory),
+        // What the textures take is taken already.
+        max_memory: machine::memory_cap(args.max_memory).map(|cap| cap.saturating_sub(input::held_by_textures(inputs))),
         backend: args.backend.into(),
         precision: target.map_or(Precision::Double, |target| Precision::of_format(target.options.format)),
         ..Options::new(voxel)
@@ -97,10 +99,12 @@ fn trust(rule: VoteRule) -> Trust {
     if rule == VoteRule::Winding { Trust::All } else { Trust::Sure }
 }
 
-/// What `--no-fit`, `--rebuild` and `--simplify` ask for. Colours that vary within triangles would be smeared over the
+/// What `--no-fit`, `--rebuild` and `--simplify` ask for. Colours and textures that vary within triangles would be smeared over the
 /// large triangles of simplified flat parts, so with them all triangles are kept unless it is asked for.
 fn fit(args: &SolidArgs, scale: &Scale, inputs: &[Input]) -> Result<Option<FitOptions>, Failure> {
-    let varying = |input: &Input| matches!(input.loaded.colours, Some(Colours::Vertices(_) | Colours::Corners(_)));
+    let varying = |input: &Input| {
+        matches!(input.loaded.colours, Some(Colours::Vertices(_) | Colours::Corners(_))) || input.has_images()
+    };
     let usual = FitOptions::default();
     let tolerance = match (args.simplify, scale.voxel) {
         (Some(Simplify::Off), _) => 0.0,
@@ -211,7 +215,10 @@ fn make(
     if let Some(target) = target {
         let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
         let colours = pipeline::carry_colours(&outcome, &operands);
-        write(&outcome.mesh, colours.as_ref(), target, session, report)?;
+        let textures: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.texture.as_ref())).collect();
+        let texture = pipeline::carry_texture(&outcome, &textures);
+        let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
+        write(&outcome.mesh, paint, target, session, report)?;
     }
     let broken = limits::broken(report, args.max_memory);
     report.warnings.extend(broken.iter().cloned());
@@ -225,21 +232,22 @@ fn make(
 }
 
 /// Writes the result and judges the written file.
-pub(super) fn write(
-    mesh: &TriMesh,
-    colours: Option<&Colours>,
+pub(super) fn write<'a>(
+    mesh: &'a TriMesh,
+    paint: impl Into<Paint<'a>>,
     target: &Target,
     session: &Session,
     report: &mut RunReport,
 ) -> Result<(), Failure> {
-    let lost = colours.and_then(|c| super::convert::lost_colours(c, mesh, target.options.format));
-    report.warnings.extend(lost);
-    let (stored, moved) = stored(mesh, target.options.format);
+    let paint = paint.into();
+    report.warnings.extend(paint::lost(mesh, &paint, target));
+    let arranged = Arranged::new(mesh, &paint, target.options.format);
+    let (stored, moved) = stored(&arranged.mesh, target.options.format);
     if let Some(moved) = moved {
         report.warnings.push(rounding(moved, target.options.format));
     }
     let (entry, validity) = report.timed("write and verify", |_| {
-        write_verified(target, &stored, colours, session, |read| judge(read, &stored, moved, session))
+        write_verified(target, &stored, arranged.paint(), session, |read| judge(read, &stored, moved, session))
     })?;
     report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
     Ok(())
