@@ -1,5 +1,7 @@
 //! The command line as users meet it: real processes, real files.
 
+mod common;
+
 #[path = "cli/compare.rs"]
 mod compare;
 #[path = "cli/faults.rs"]
@@ -22,6 +24,8 @@ mod solids;
 mod stops;
 #[path = "cli/testdata.rs"]
 mod testdata;
+#[path = "cli/textures.rs"]
+mod textures;
 #[path = "cli/usage.rs"]
 mod usage;
 

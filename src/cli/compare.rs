@@ -112,8 +112,7 @@ fn write_map(path: &Path, a: &Input, b: &Input, unit: Option<Unit>, session: &Se
         "quality is the signed distance to the reference: negative inside it, positive outside".to_string(),
         format!("colours: blue inside, white 0, red outside; full colour at {range}{per} (99th percentile) and beyond"),
     ];
-    let comments: Vec<String> =
-        sentences.into_iter().chain(legend.iter().map(LegendEntry::to_string)).collect();
+    let comments: Vec<String> = sentences.into_iter().chain(legend.iter().map(LegendEntry::to_string)).collect();
     let quality: Vec<f32> = map.distances.iter().map(|&distance| distance as f32).collect();
     let attributes = VertexMap { quality: &quality, colours: &map.colours(), comments: &comments };
     let mut bytes = Vec::new();

@@ -103,7 +103,10 @@ mod tests {
             }
             for canal in CANALS {
                 let nearest = KINDS.map(|kind| far(seen(kind, eye), seen(canal, eye)));
-                assert!(nearest.iter().all(|apart| *apart > 8.0), "{canal:?} is {nearest:?} from the kinds for {eye:?}");
+                assert!(
+                    nearest.iter().all(|apart| *apart > 8.0),
+                    "{canal:?} is {nearest:?} from the kinds for {eye:?}"
+                );
             }
         }
     }

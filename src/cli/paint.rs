@@ -26,7 +26,9 @@ impl<'a> Arranged<'a> {
             texture: paint.texture.map(Cow::Borrowed),
         };
         let pieces = matches!(format, Format::Glb | Format::Gltf);
-        let (Some(texture), true) = (paint.texture.filter(|texture| texture.fits(mesh)), pieces) else { return as_it_is };
+        let (Some(texture), true) = (paint.texture.filter(|texture| texture.fits(mesh)), pieces) else {
+            return as_it_is;
+        };
         let Some(order) = texture.by_material() else { return as_it_is };
         let triangles = order.iter().map(|&t| mesh.triangles[t as usize]).collect();
         let colours = paint.colours.map(|colours| match colours {
@@ -50,11 +52,14 @@ impl<'a> Arranged<'a> {
 /// What becomes of colours and textures that the format has no place for.
 pub fn lost(mesh: &TriMesh, paint: &Paint<'_>, target: &Target) -> Vec<String> {
     let format = target.options.format;
-    let mut lost: Vec<String> = paint.colours.and_then(|colours| lost_colours(colours, mesh, format)).into_iter().collect();
+    let mut lost: Vec<String> =
+        paint.colours.and_then(|colours| lost_colours(colours, mesh, format)).into_iter().collect();
     if let Some(texture) = paint.texture {
         lost.extend(texture.lost_in(format, !output::is_direct(&target.path)));
         if paint.colours.is_some() && covers_colours(texture, format) {
-            lost.push("3mf has either a colour or a texture for a triangle; colours of textured ones are left out".into());
+            lost.push(
+                "3mf has either a colour or a texture for a triangle; colours of textured ones are left out".into(),
+            );
         }
     }
     lost
@@ -76,9 +81,8 @@ fn covers_colours(texture: &TextureMap, format: Format) -> bool {
 /// Whether the file as read back has the colours, as far as its format holds them.
 pub fn check_colours(read: &Loaded, mesh: &TriMesh, paint: &Paint<'_>) -> Result<(), Failure> {
     let Some(colours) = paint.colours else { return Ok(()) };
-    let same = |found: &Colours| {
-        (0..mesh.triangles.len()).all(|t| colours.corners(mesh, t) == found.corners(&read.mesh, t))
-    };
+    let same =
+        |found: &Colours| (0..mesh.triangles.len()).all(|t| colours.corners(mesh, t) == found.corners(&read.mesh, t));
     // Beside a texture a reader takes white for nothing.
     let white = || (0..mesh.triangles.len()).all(|t| colours.corners(mesh, t) == [[255; 4]; 3]);
     let covered = paint.texture.is_some_and(|texture| covers_colours(texture, read.format));

@@ -130,9 +130,7 @@ fn surfaces(meshes: &[&Input], options: &RenderOptions, session: &Session) -> Re
     let colours: Vec<_> = meshes.iter().map(|input| shown(input)).collect();
     let painted = |n: usize| Painted { mesh: &meshes[n].loaded.mesh, colours: colours[n].as_deref() };
     let drawn = match meshes {
-        [_, _, ..] => {
-            render_pair(painted(0), painted(1), options, &session.progress).map(|images| images.to_vec())
-        }
+        [_, _, ..] => render_pair(painted(0), painted(1), options, &session.progress).map(|images| images.to_vec()),
         [_] => render(painted(0), options, &session.progress).map(|image| vec![image]),
         [] => Ok(Vec::new()),
     };

@@ -57,7 +57,16 @@ impl Session {
         let ending = Ending::watch(deadline, max_memory, flag)?;
         let fewer = machine::start_threads(common.threads)?;
         let lines = RefCell::new(fewer.iter().map(|line| format!("note: {line}")).collect());
-        Ok(Self { start, progress, verbose: common.verbose, kept: KeptFiles::default(), quiet: common.quiet, meter, ending, lines })
+        Ok(Self {
+            start,
+            progress,
+            verbose: common.verbose,
+            kept: KeptFiles::default(),
+            quiet: common.quiet,
+            meter,
+            ending,
+            lines,
+        })
     }
 
     /// A line for the user at the end, when all files are in their places, unless `-q`.

@@ -146,10 +146,7 @@ fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
             Operation::Open => "opened by a ball of",
         };
         let volume = words::percent_change(change.volume_before, change.volume_after);
-        parts.push(format!(
-            "{word} {by}: volume {volume}; {} new",
-            words::plural(change.made, "triangle")
-        ));
+        parts.push(format!("{word} {by}: volume {volume}; {} new", words::plural(change.made, "triangle")));
     } else if let Some(thick) = &pipeline.thicken {
         parts.push(thickened(thick, pipeline.closed_triangles, unit));
     }

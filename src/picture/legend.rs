@@ -69,7 +69,8 @@ mod tests {
         for scale in [1, 2, 3] {
             let mut image = grey(480 * scale, 360 * scale);
             draw_legend(&mut image, &entries());
-            let from_below = |dots: u32| image.pixel((GAP + 4) * scale, image.height - 1 - dots * scale).expect("there");
+            let from_below =
+                |dots: u32| image.pixel((GAP + 4) * scale, image.height - 1 - dots * scale).expect("there");
             assert_eq!(from_below(GAP + 4)[..3], [10, 200, 10]);
             assert_eq!(from_below(2 * GAP + PATCH + 4)[..3], [200, 10, 10]);
             let ink = image.rgba.chunks(4).filter(|pixel| pixel[..3] == [30, 32, 38]).count() as u32;

@@ -31,8 +31,7 @@ fn kept_rebuilt_and_made_up_are_told_apart() {
             corners.sort();
             corners
         };
-        let own: std::collections::HashSet<_> =
-            (0..input.triangles.len()).map(|t| sorted(input.corners(t))).collect();
+        let own: std::collections::HashSet<_> = (0..input.triangles.len()).map(|t| sorted(input.corners(t))).collect();
         for (t, &kind) in kinds.iter().enumerate() {
             assert_eq!(kind == 0, own.contains(&sorted(map.mesh.corners(t))), "{name}: triangle {t} is of kind {kind}");
         }

@@ -5,7 +5,9 @@ use std::path::Path;
 use meshwright::io::{Colours, Format, read_bytes};
 use proptest::prelude::*;
 
-use crate::support::{assert_sound, encoded, encoded_in_colour, encoded_with_textures, every_form, tetrahedron, zipped};
+use crate::support::{
+    assert_sound, encoded, encoded_in_colour, encoded_with_textures, every_form, tetrahedron, zipped,
+};
 
 /// The committed seeds of the fuzzer and every form that the writers have.
 fn originals() -> Vec<(Format, Vec<u8>)> {

@@ -39,7 +39,14 @@ impl<'a> Content<'a> {
         let texture = paint.texture;
         let whole = || vec![Piece { first: 0, count: mesh.triangles.len(), material: None, textured: false }];
         let pieces = texture.map_or_else(whole, pieces);
-        let content = Self { mesh: Cow::Borrowed(mesh), colours: None, coordinates: None, texture, images: images(texture), pieces };
+        let content = Self {
+            mesh: Cow::Borrowed(mesh),
+            colours: None,
+            coordinates: None,
+            texture,
+            images: images(texture),
+            pieces,
+        };
         Ok(match (paint.colours, texture.filter(|texture| texture.has_coordinates())) {
             (None, None) => content,
             (Some(colours), None) => {
@@ -54,9 +61,9 @@ impl<'a> Content<'a> {
         })
     }
 
-    /// Whether materials have their colours: not where a reader would take them for those of vertices and multiply both.
+    /// Whether materials have their colours: not where vertices have some that are the colours of the surface already.
     pub(super) fn has_factors(&self) -> bool {
-        self.coordinates.is_some() || self.colours.is_none()
+        self.colours.is_none()
     }
 
     /// The number of a piece's material in the file; for colours alone that after the last.

@@ -1,7 +1,7 @@
 //! The node tree: transforms are applied, every node with a mesh becomes a part.
 
-use std::collections::btree_map::Entry;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::Path;
 
 use glam::{DMat4, DQuat, DVec3};
@@ -208,9 +208,10 @@ impl Reader<'_, '_> {
     /// Colours the triangles from number `start` on, whose vertices are counted from `first`.
     fn paint(&mut self, primitive: &Primitive, start: usize, first: u32, shared: &mut Shared) -> Result<(), ReadError> {
         let mut tint = Tint::of(self.root, primitive)?;
-        if self.looks.is_textured {
-            // The colour of the material goes with its texture.
+        if self.looks.keeps_colours {
             tint = Tint::plain();
+        }
+        if self.looks.is_textured {
             self.looks.hang(primitive, (start, first), &mut self.soup, self.allowance);
         }
         let (soup, odd) = (&mut self.soup, &mut 0);

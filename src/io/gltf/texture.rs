@@ -23,6 +23,8 @@ pub(super) struct Looks<'a> {
     gallery: Gallery<'a>,
     /// Whether the document has textures or coordinates at all; else its materials are colours.
     pub(super) is_textured: bool,
+    /// Whether the colours of materials stay theirs: not where vertices have colours that they are multiplied by.
+    pub(super) keeps_colours: bool,
     /// Our numbers of materials, by those of the document.
     numbers: BTreeMap<usize, u32>,
     coordinates: BTreeMap<usize, Option<Vec<[f32; 2]>>>,
@@ -35,13 +37,18 @@ pub(super) struct Looks<'a> {
 impl<'a> Looks<'a> {
     pub(super) fn new(root: &'a Root, buffers: &'a Buffers<'a>, path: Option<&'a Path>) -> Self {
         let with_image = |m: &Material| m.pbr_metallic_roughness.base_color_texture.is_some();
-        let mut primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-        let with_coordinates = |p: &Primitive| p.attributes.contains_key(&Checked::Valid(Semantic::TexCoords(0)));
+        let primitives = || root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+        let has = |semantic: Semantic| {
+            let semantic = Checked::Valid(semantic);
+            primitives().any(|primitive| primitive.attributes.contains_key(&semantic))
+        };
+        let is_textured = root.materials.iter().any(with_image) || has(Semantic::TexCoords(0));
         Self {
             root,
             buffers,
             gallery: Gallery::beside(path),
-            is_textured: root.materials.iter().any(with_image) || primitives.any(with_coordinates),
+            is_textured,
+            keeps_colours: is_textured && !has(Semantic::Colors(0)),
             numbers: BTreeMap::new(),
             coordinates: BTreeMap::new(),
             others: 0,
@@ -100,7 +107,7 @@ impl<'a> Looks<'a> {
         ];
         self.others += others.into_iter().filter(|there| *there).count();
         let image = pbr.base_color_texture.as_ref().and_then(|texture| self.image(texture.index));
-        let colour = (!tint.is_plain()).then(|| tint.applied_to([1.0; 4], &mut 0));
+        let colour = (self.keeps_colours && !tint.is_plain()).then(|| tint.applied_to([1.0; 4], &mut 0));
         let own = soup.texture.materials.len() as u32;
         let name = material.name.clone().unwrap_or_default();
         soup.texture.materials.push(io::Material { name, colour, image });
@@ -148,7 +155,9 @@ impl<'a> Looks<'a> {
         }
         if self.others > 0 {
             let textures = counted(self.others, "further texture");
-            self.warnings.push(format!("{textures} of materials (gloss, bumps and the like) left out; that of the colour is kept"));
+            self.warnings.push(format!(
+                "{textures} of materials (gloss, bumps and the like) left out; that of the colour is kept"
+            ));
         }
         soup.texture.count_down();
         soup.warnings.append(&mut self.warnings);

@@ -148,7 +148,10 @@ fn materials(content: &Content<'_>) -> Vec<Value> {
         }
         written
     });
-    let plain = content.colours.as_ref().map(|_| json!({ "pbrMetallicRoughness": { "metallicFactor": 0 }, "alphaMode": mode(blends) }));
+    let plain = content
+        .colours
+        .as_ref()
+        .map(|_| json!({ "pbrMetallicRoughness": { "metallicFactor": 0 }, "alphaMode": mode(blends) }));
     own.chain(plain).collect()
 }
 

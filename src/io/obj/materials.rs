@@ -16,8 +16,21 @@ const NO_NAMES: [&str; 3] = ["none", "(null)", "(none)"];
 
 /// Maps of an image that say something else than the colour.
 const OTHER_MAPS: [&[u8]; 15] = [
-    b"map_Ka", b"map_Ks", b"map_Ke", b"map_Ns", b"map_d", b"map_Bump", b"map_bump", b"map_Pr", b"map_Pm", b"bump", b"disp",
-    b"decal", b"norm", b"refl", b"map_Ps",
+    b"map_Ka",
+    b"map_Ks",
+    b"map_Ke",
+    b"map_Ns",
+    b"map_d",
+    b"map_Bump",
+    b"map_bump",
+    b"map_Pr",
+    b"map_Pm",
+    b"bump",
+    b"disp",
+    b"decal",
+    b"norm",
+    b"refl",
+    b"map_Ps",
 ];
 
 /// What the statements about looks have said so far.
@@ -127,13 +140,15 @@ impl Looks {
             let triangles = counted(absent, "triangle");
             soup.warnings.push(format!("{triangles} with texture coordinates that are not there; read without"));
         }
-        let mut read = Read { gallery: Gallery::beside(path), known: &self.numbers, maps: 0, shifts: 0, met: BTreeSet::new() };
+        let mut read =
+            Read { gallery: Gallery::beside(path), known: &self.numbers, maps: 0, shifts: 0, met: BTreeSet::new() };
         if !soup.texture.materials.is_empty() {
             self.libraries.iter().for_each(|line| read.libraries(line, &mut soup.texture));
         }
         if read.maps > 0 {
             let maps = counted(read.maps, "further texture");
-            soup.warnings.push(format!("{maps} of materials (gloss, bumps and the like) left out; that of the colour is kept"));
+            soup.warnings
+                .push(format!("{maps} of materials (gloss, bumps and the like) left out; that of the colour is kept"));
         }
         if read.shifts > 0 {
             let textures = counted(read.shifts, "texture");
@@ -141,7 +156,8 @@ impl Looks {
         }
         let met = read.met;
         soup.texture.hang(read.gallery, &mut soup.warnings);
-        soup.texture.drop_materials(|n, name| !met.contains(&n) && NO_NAMES.iter().any(|no| name.eq_ignore_ascii_case(no)));
+        soup.texture
+            .drop_materials(|n, name| !met.contains(&n) && NO_NAMES.iter().any(|no| name.eq_ignore_ascii_case(no)));
     }
 }
 
@@ -238,7 +254,9 @@ fn file_of(mut words: Words<'_>) -> (&[u8], bool) {
                 3
             }
             Some(b"-mm") => 2,
-            Some(b"-blendu" | b"-blendv" | b"-cc" | b"-clamp" | b"-boost" | b"-texres" | b"-imfchan" | b"-bm" | b"-type") => 1,
+            Some(
+                b"-blendu" | b"-blendv" | b"-cc" | b"-clamp" | b"-boost" | b"-texres" | b"-imfchan" | b"-bm" | b"-type",
+            ) => 1,
             _ => return (words.rest(), shifted),
         };
         words = ahead;

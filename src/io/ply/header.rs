@@ -1,8 +1,8 @@
 //! The header: what elements there are and how their rows are laid out.
 
 use super::super::error::{ReadError, ReadProblem};
-use super::legend::LegendEntry;
 use super::super::text::{Words, integer, quoted, quoted_or_end};
+use super::legend::LegendEntry;
 
 /// How the data after the header is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

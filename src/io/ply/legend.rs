@@ -57,7 +57,8 @@ mod tests {
         let entry = LegendEntry { colour: [1, 0xab, 255], text: "kept: as it was".into() };
         assert_eq!(entry.to_string(), "legend #01ABFF kept: as it was");
         assert_eq!(LegendEntry::parse(entry.to_string().as_bytes()), Some(entry));
-        for text in ["", "legend", "legend #12345", "legend #12345g x", "legend #123456", "legend #123456 \x1b", "made"] {
+        for text in ["", "legend", "legend #12345", "legend #12345g x", "legend #123456", "legend #123456 \x1b", "made"]
+        {
             assert_eq!(LegendEntry::parse(text.as_bytes()), None, "{text}");
         }
         let hostile = format!("legend #102030 \x1b[31m{}", "x".repeat(1000));

@@ -61,9 +61,8 @@ pub(super) struct OfFaces {
 
 impl OfFaces {
     pub(super) fn of(element: &Element) -> Self {
-        let named = |name: &str, list: bool| {
-            element.properties.iter().position(|p| p.name == name && p.list.is_some() == list)
-        };
+        let named =
+            |name: &str, list: bool| element.properties.iter().position(|p| p.name == name && p.list.is_some() == list);
         Self { coordinates: named("texcoord", true), image: named("texnumber", false), cut: Vec::new() }
     }
 

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::super::text::quoted;
-use super::beside::{MOST_BESIDE, file_beside, read_beside};
 use super::TextureImage;
+use super::beside::{MOST_BESIDE, file_beside, read_beside};
 
 /// Files beside a mesh that are looked for: a small file may name any number.
 const MOST_FILES: usize = 4096;

@@ -10,8 +10,8 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::colour::{Colours, Rgba, WHITE};
 use super::Format;
+use super::colour::{Colours, Rgba, WHITE};
 use super::soup::counted;
 use crate::mesh::TriMesh;
 
@@ -165,7 +165,9 @@ impl TextureMap {
             && (0..count).all(|t| {
                 let found = other.at(t, other.downward);
                 wanted(t) == found
-                    && (!packs || wanted(t).is_none() || embedded(self.image(t), self) == embedded(other.image(t), other))
+                    && (!packs
+                        || wanted(t).is_none()
+                        || embedded(self.image(t), self) == embedded(other.image(t), other))
             })
     }
 
@@ -193,7 +195,9 @@ impl TextureMap {
                 lost.push(format!("{format} holds no {what}; they are left out{colours}"));
             }
             Format::Obj | Format::Ply if !beside && (has_images || !self.materials.is_empty()) => {
-                lost.push(format!("{format} has materials and images in files beside it, which a stream has not; left out"));
+                lost.push(format!(
+                    "{format} has materials and images in files beside it, which a stream has not; left out"
+                ));
             }
             Format::Obj | Format::Ply => {}
             Format::Glb | Format::Gltf | Format::ThreeMf if foreign > 0 => {
@@ -267,7 +271,10 @@ mod tests {
         let order = map.by_material().expect("they are not together");
         assert_eq!(order, [3, 1, 0, 2]);
         let sorted = map.picked(&order);
-        assert_eq!((sorted.by_material(), sorted.material_of[3], sorted.coordinates[3]), (None, Some(1), map.coordinates[2]));
+        assert_eq!(
+            (sorted.by_material(), sorted.material_of[3], sorted.coordinates[3]),
+            (None, Some(1), map.coordinates[2])
+        );
     }
 
     #[test]
@@ -276,7 +283,9 @@ mod tests {
         let red = Colours::Faces(vec![WHITE, [255, 0, 0, 255], WHITE, WHITE]);
         assert_eq!(map.material_colours(), Some(red));
         assert_eq!(map.lost_in(Format::Stl, true).len(), 1);
-        assert!([Format::Obj, Format::Ply, Format::Glb, Format::ThreeMf].iter().all(|f| map.lost_in(*f, true).is_empty()));
+        assert!(
+            [Format::Obj, Format::Ply, Format::Glb, Format::ThreeMf].iter().all(|f| map.lost_in(*f, true).is_empty())
+        );
         assert_eq!(map.lost_in(Format::Obj, false).len(), 1);
         let mut foreign = map.clone();
         foreign.images[0].bytes = Arc::from(*b"BM....");

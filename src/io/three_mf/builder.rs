@@ -233,7 +233,7 @@ impl<'a> Builder<'a> {
         }
         if self.colourless > 0 {
             let triangles = counted(self.colourless, "triangle");
-            sentences.push(format!("{triangles} with a material that has no colour; left out"));
+            sentences.push(format!("{triangles} with a texture or a material that has no colour; left out"));
         }
         if self.reaches_over() {
             sentences.push(

@@ -80,6 +80,7 @@ impl Models<'_> {
     fn places(&self, property: Inherited) -> Option<((usize, u32), TexCoords)> {
         let Inherited { model, property } = property;
         let (image, entries) = self.loaded[model].places.get(&property.group)?;
+        self.loaded[model].textures.get(image)?;
         let place = |entry: u32| entries.get(entry as usize).copied();
         let [a, b, c] = property.entries.map(place);
         Some(((model, *image), [a?, b?, c?]))

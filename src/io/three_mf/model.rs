@@ -121,7 +121,10 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
                         (b"texture2dgroup", _) => places = Some((id(&e, b"id")?, (id(&e, b"texid")?, Vec::new()))),
                         (b"tex2coord", _) => {
                             if let Some((_, (_, places))) = &mut places {
-                                places.push([single(needed(&e, b"u")?.trim_ascii()), single(needed(&e, b"v")?.trim_ascii())]);
+                                places.push([
+                                    single(needed(&e, b"u")?.trim_ascii()),
+                                    single(needed(&e, b"v")?.trim_ascii()),
+                                ]);
                             }
                         }
                         (b"mesh", Some(_)) => in_mesh = true,

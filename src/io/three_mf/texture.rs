@@ -28,7 +28,9 @@ impl Textures {
     ) {
         let first = soup.triangles.len() - numbers.len();
         for (triangle, &number) in (first..).zip(numbers) {
-            let Some((image, [a, b, c])) = property(number).and_then(|property| models.places(property)) else { continue };
+            let Some((image, [a, b, c])) = property(number).and_then(|property| models.places(property)) else {
+                continue;
+            };
             let next = self.numbers.len() as u32;
             let material = *self.numbers.entry(image).or_insert(next);
             soup.texture.cover(triangle..triangle + 1, material);

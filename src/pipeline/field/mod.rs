@@ -12,7 +12,9 @@ pub use build::{Built, FieldBuilder, Operand};
 use super::distance::DistanceOutcome;
 use super::frame::Frame;
 use super::morphology::volume;
-use super::{DistanceReport, Error, Options, Outcome, Report, TriangleCounts, TriangleSource, VoxelSize, prepare, refine, stages};
+use super::{
+    DistanceReport, Error, Options, Outcome, Report, TriangleCounts, TriangleSource, VoxelSize, prepare, refine, stages,
+};
 use crate::field::filter::FilterError;
 use crate::field::{Extent, Field, FillError, FillOptions, LevelError, Shared, fill, level};
 use crate::fit::{Facets, FitReport, fit};
