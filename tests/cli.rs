@@ -1,5 +1,7 @@
 //! The command line as users meet it: real processes, real files.
 
+mod common;
+
 #[path = "cli/compare.rs"]
 mod compare;
 #[path = "cli/faults.rs"]
@@ -8,6 +10,8 @@ mod faults;
 mod fields;
 #[path = "cli/files.rs"]
 mod files;
+#[path = "cli/maps.rs"]
+mod maps;
 #[path = "cli/readers.rs"]
 mod readers;
 #[path = "cli/sdf.rs"]
@@ -20,6 +24,8 @@ mod solids;
 mod stops;
 #[path = "cli/testdata.rs"]
 mod testdata;
+#[path = "cli/textures.rs"]
+mod textures;
 #[path = "cli/usage.rs"]
 mod usage;
 

@@ -1,6 +1,8 @@
 //! Files in and out: every real mesh reads, every format round-trips, and no file, however
 //! hostile, does more than return an error.
 
+mod common;
+
 #[path = "io/colours.rs"]
 mod colours;
 #[path = "io/formats.rs"]
@@ -31,3 +33,5 @@ mod round_trip;
 mod saving;
 #[path = "io/support.rs"]
 mod support;
+#[path = "io/textures.rs"]
+mod textures;

@@ -14,7 +14,7 @@ use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
 use crate::compare::{CompareOptions, Comparison, Relative, compare, deviation_map};
-use crate::io::{self, Format, Unit, VertexMap};
+use crate::io::{self, Format, LegendEntry, Unit, VertexMap};
 
 /// Measures two files against each other and prints a table.
 pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
@@ -97,10 +97,19 @@ fn write_map(path: &Path, a: &Input, b: &Input, unit: Option<Unit>, session: &Se
         .ok_or_else(|| Failure::input(format!("{}: no triangle has an area", a.label)))?;
     let range = map.range;
     let per = unit.map_or(String::new(), |unit| format!(" {unit}"));
-    let comments = [
+    let name = unit.map(|unit| unit.to_string());
+    let far = words::length(range, name.as_deref());
+    let meanings = [
+        (-range, format!("{far} inside the reference, or more")),
+        (0.0, "on the surface of the reference".into()),
+        (range, format!("{far} outside the reference, or more")),
+    ];
+    let legend = meanings.map(|(distance, text)| LegendEntry { colour: map.colour(distance), text });
+    let sentences = [
         "quality is the signed distance to the reference: negative inside it, positive outside".to_string(),
         format!("colours: blue inside, white 0, red outside; full colour at {range}{per} (99th percentile) and beyond"),
     ];
+    let comments: Vec<String> = sentences.into_iter().chain(legend.iter().map(LegendEntry::to_string)).collect();
     let quality: Vec<f32> = map.distances.iter().map(|&distance| distance as f32).collect();
     let attributes = VertexMap { quality: &quality, colours: &map.colours(), comments: &comments };
     let mut bytes = Vec::new();

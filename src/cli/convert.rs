@@ -8,10 +8,11 @@ use super::exit::{Exit, Failure};
 use super::given::Given;
 use super::input;
 use super::output::{Target, write_verified};
+use super::paint::{self, Arranged};
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
 use super::{grids, keep, words};
-use crate::io::{Carried, Colours, Format, Loaded};
+use crate::io::{Loaded, Paint};
 use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
 
 /// Reads one file and writes it again.
@@ -38,14 +39,16 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     if input.loaded.parts.len() > 1 {
         report.warnings.push(format!("the {} objects of the input become one", input.loaded.parts.len()));
     }
-    let lost = |colours| lost_colours(colours, &input.loaded.mesh, target.options.format);
-    report.warnings.extend(input.loaded.colours.as_ref().and_then(lost));
+    let Loaded { mesh, colours, texture, .. } = &input.loaded;
+    let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
+    report.warnings.extend(paint::lost(mesh, &paint, &target));
     report.warnings.extend(target.unit_note());
-    let before = state(&input.loaded.mesh, session)?;
+    let before = state(mesh, session)?;
+    let arranged = Arranged::new(mesh, &paint, target.options.format);
     let (entry, after) = report.timed("write and verify", |_| {
-        write_verified(&target, &input.loaded.mesh, input.loaded.colours.as_ref(), session, |read| {
-            check_close(read, &input.loaded.mesh, target.options.factor())?;
-            check_colours(read, &input.loaded)?;
+        write_verified(&target, &arranged.mesh, arranged.paint(), session, |read| {
+            check_close(read, &arranged.mesh, target.options.factor())?;
+            paint::check_colours(read, &arranged.mesh, &arranged.paint())?;
             let after = state(&read.mesh, session)?;
             let keeps = args.keeping.keep_partial || args.writing.force;
             match is_mostly_lost(&before, &after) && !keeps {
@@ -85,29 +88,6 @@ fn check_close(read: &Loaded, mesh: &TriMesh, factor: f64) -> Result<(), Failure
             (0..3).all(|i| close(a[i], b[i]))
         });
     if same { Ok(()) } else { Err(Failure::internal("the file does not hold what was written to it; it was removed")) }
-}
-
-/// Whether the file has the colours, where its format holds them.
-fn check_colours(read: &Loaded, given: &Loaded) -> Result<(), Failure> {
-    let Some(colours) = &given.colours else { return Ok(()) };
-    let same = |found: &Colours| {
-        (0..given.mesh.triangles.len()).all(|t| colours.corners(&given.mesh, t) == found.corners(&read.mesh, t))
-    };
-    match colours.carried_by(read.format, &given.mesh) {
-        Carried::Wholly if !read.colours.as_ref().is_some_and(same) => {
-            Err(Failure::internal("the file does not hold the colours that were written to it; it was removed"))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// What becomes of colours that the format has no place for.
-pub(super) fn lost_colours(colours: &Colours, mesh: &TriMesh, format: Format) -> Option<String> {
-    match colours.carried_by(format, mesh) {
-        Carried::Wholly => None,
-        Carried::Roughly => Some(format!("{format} has no place for colours of this kind; they were averaged")),
-        Carried::Not => Some(format!("{format} holds no colours; they are left out")),
-    }
 }
 
 /// More than this share of the triangles or vertices lost by rounding is no copy of the shape any more.

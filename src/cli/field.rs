@@ -11,7 +11,7 @@ use super::exit::{Asked, Exit, Failure};
 use super::field_args::FieldArgs;
 use super::files::Made;
 use super::given::{Given, Which};
-use super::input::{self, is_stream};
+use super::input::{self, Input, is_stream};
 use super::length::{BandChoice, Length, Scale, Simplify};
 use super::output::Target;
 use super::report::RunReport;
@@ -22,7 +22,7 @@ use super::{dropped, limits, machine, output, sdf, solid};
 use crate::field::Sampled;
 use crate::field::language::{self, LanguageError, Node, Value};
 use crate::fit::FitOptions;
-use crate::io::{Colours, GridFormat, GridValues, Unit, WriteOptions};
+use crate::io::{Colours, GridFormat, GridValues, Paint, Unit, WriteOptions};
 use crate::mesh::Bounds;
 use crate::picture::ramp_colour;
 use crate::pipeline::{self, Built, FieldBand, FieldBuilder, FieldReport, Operand, Options, Precision, VoxelSize};
@@ -242,16 +242,21 @@ fn options(args: &FieldArgs, scale: &Scale, given: &Given, held: u64) -> Result<
         _ => VoxelSize::Along(args.resolution),
     };
     let usual = FitOptions::default();
-    // Colours that vary are kept apart by the vertices. Lengths are measured when the voxel is known.
-    let keeps_all = args.simplify == Some(Simplify::Off) || args.simplify.is_none() && args.paint.is_some();
+    // Colours and images that vary are kept apart by the vertices.
+    let varies = args.paint.is_some() || given.meshes.iter().any(Input::has_images);
+    // Lengths are measured when the voxel is known.
+    let keeps_all = args.simplify == Some(Simplify::Off) || args.simplify.is_none() && varies;
     let tolerance = if keeps_all { 0.0 } else { usual.tolerance };
     Ok(Options {
         fit: (!args.no_fit).then_some(FitOptions { tolerance, ..usual }),
-        classes: given.painted().map(|(_, colours)| pipeline::classes(colours)).collect(),
+        classes: (given.painted().zip(given.textured()))
+            .map(|((mesh, colours), (_, texture))| pipeline::classes_of(mesh, colours, texture))
+            .collect(),
         orient: args.orient.into(),
         collapse: !args.no_collapse,
-        // What the lattices of the files take is taken already.
-        max_memory: machine::memory_cap(args.max_memory).map(|cap| cap.saturating_sub(held)),
+        // What the lattices and textures of the files take is taken already.
+        max_memory: machine::memory_cap(args.max_memory)
+            .map(|cap| cap.saturating_sub(held + input::held_by_textures(&given.meshes))),
         ..Options::new(voxel)
     })
 }
@@ -351,7 +356,10 @@ impl Run<'_> {
         };
         let target =
             Target { path: target.path.clone(), options: WriteOptions { unit: self.scale.unit, ..target.options } };
-        solid::write(&outcome.mesh, paint.as_ref(), &target, self.session, report)
+        let operands: Vec<_> = self.given.textured().collect();
+        let texture = self.texts.paint.is_none().then(|| pipeline::carry_texture(&outcome, &operands)).flatten();
+        let paint = Paint { colours: paint.as_ref(), texture: texture.as_ref(), beside: None };
+        solid::write(&outcome.mesh, paint, &target, self.session, report)
     }
 
     /// The options with `--simplify` in voxels of the lattice that the surface will be made on.

@@ -52,6 +52,28 @@ pub fn check(inputs: &[&Path], made: &[Made]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// The files of a run, which those that go beside its output must leave alone.
+#[derive(Default)]
+pub struct KeptFiles {
+    keys: Vec<Key>,
+    /// Whether an output may take the place of an input.
+    pub force: bool,
+}
+
+impl KeptFiles {
+    /// Those of a run.
+    pub fn of(inputs: &[&Path], made: &[Made]) -> Self {
+        let paths = inputs.iter().copied().chain(made.iter().map(|made| made.path.as_path()));
+        let keys = paths.filter(|path| !is_stream(path)).filter_map(|path| Key::of(path, "/dev/stdin")).collect();
+        Self { keys, force: made.iter().any(|made| made.force) }
+    }
+
+    /// Whether the file at `path` is an input, or one that the run makes by name.
+    pub fn contain(&self, path: &Path) -> bool {
+        Key::of(path, "/dev/stdin").is_some_and(|key| self.keys.contains(&key))
+    }
+}
+
 /// Makes sure that files can be made in all folders, and removes what killed runs have left of these files.
 pub fn prepare<'a>(made: impl IntoIterator<Item = &'a Made>) -> Result<(), Failure> {
     let files = made.into_iter().map(|made| made.path.as_path());

@@ -9,7 +9,7 @@ use super::negative;
 use super::report::RunReport;
 use super::session::Session;
 use super::slice::{self, GridInput};
-use crate::io::{Colours, Format, GridFormat, Unit};
+use crate::io::{Colours, Format, GridFormat, TextureMap, Unit};
 use crate::mesh::TriMesh;
 
 /// Files as read.
@@ -108,6 +108,14 @@ impl Given {
         self.order.iter().map(|which| match *which {
             Which::Mesh(n) => (&self.meshes[n].loaded.mesh, self.meshes[n].loaded.colours.as_ref()),
             Which::Grid(_) => (NOTHING, None),
+        })
+    }
+
+    /// Each input's mesh and textures; a grid has neither.
+    pub fn textured(&self) -> impl Iterator<Item = (&TriMesh, Option<&TextureMap>)> {
+        self.order.iter().zip(self.painted()).map(|(which, (mesh, _))| match *which {
+            Which::Mesh(n) => (mesh, self.meshes[n].loaded.texture.as_ref()),
+            Which::Grid(_) => (mesh, None),
         })
     }
 

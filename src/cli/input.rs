@@ -11,8 +11,9 @@ use super::negative;
 use super::report::{InputEntry, PartEntry};
 use super::session::Session;
 use super::words;
-use crate::io::{self, Format, Loaded, Part, Unit};
+use crate::io::{self, Format, Loaded, Part, TextureMap, Unit};
 use crate::mesh::{ValidateOptions, Validity, validate};
+use crate::pipeline;
 
 /// One mesh as read.
 pub struct Input {
@@ -22,6 +23,25 @@ pub struct Input {
     pub loaded: Loaded,
     /// Its entry in the report; the validity is filled in later.
     pub entry: InputEntry,
+}
+
+impl Input {
+    /// A number for each triangle, different where colours, materials and textures are to be kept apart.
+    pub fn classes(&self) -> Vec<u32> {
+        let Loaded { mesh, colours, texture, .. } = &self.loaded;
+        pipeline::classes_of(mesh, colours.as_ref(), texture.as_ref())
+    }
+
+    /// Whether triangles have an image.
+    pub fn has_images(&self) -> bool {
+        let texture = self.loaded.texture.as_ref();
+        texture.is_some_and(|texture| (0..texture.coordinates.len()).any(|t| texture.image(t).is_some()))
+    }
+}
+
+/// Bytes of memory that the textures of all inputs take.
+pub fn held_by_textures(inputs: &[Input]) -> u64 {
+    inputs.iter().filter_map(|input| input.loaded.texture.as_ref()).map(TextureMap::bytes).sum()
 }
 
 /// Whether `path` stands for a standard stream.

@@ -26,10 +26,12 @@ mod keep;
 mod length;
 mod limits;
 mod machine;
+mod map;
 mod misuse;
 mod morphology;
 mod negative;
 mod output;
+mod paint;
 mod progress_bar;
 mod render;
 mod repair;
@@ -54,7 +56,7 @@ use crate::ldi::Expression;
 use crate::morphology::Operation;
 use args::{Cli, CommonArgs, SolidArgs, Verb};
 use exit::{Exit, Failure};
-use files::Made;
+use files::{KeptFiles, Made};
 use report::RunReport;
 use session::{Session, print_failure};
 
@@ -228,7 +230,10 @@ impl<'a> Job<'a> {
 fn run(mut job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<Exit, Failure>) -> Exit {
     let ready = job.check().and_then(|()| Session::new(job.verb, job.common, job.max_memory));
     let session = match ready {
-        Ok(session) => session,
+        Ok(mut session) => {
+            session.kept = KeptFiles::of(&job.inputs, &job.made);
+            session
+        }
         Err(failure) => {
             print_failure(&failure);
             return failure.exit;

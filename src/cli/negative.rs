@@ -27,7 +27,17 @@ pub fn as_operands(inputs: &mut Vec<Input>, expression: &Expression) -> Expressi
             ..inputs[n].entry.clone()
         };
         let (mesh, parts) = (negative.mesh, negative.parts);
-        let loaded = Loaded { mesh, colours: None, format, unit, parts, negative: None, warnings: Vec::new() };
+        let loaded = Loaded {
+            mesh,
+            colours: None,
+            texture: None,
+            legend: Vec::new(),
+            format,
+            unit,
+            parts,
+            negative: None,
+            warnings: Vec::new(),
+        };
         inputs.push(Input { label, loaded, entry });
     }
     without(expression, &negative_of)
@@ -66,10 +76,15 @@ pub fn carved(
     };
     let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
     let colours = pipeline::carry_colours(&outcome, &operands);
-    let options = Options { classes: vec![pipeline::classes(colours.as_ref())], ..options.clone() };
+    let textures: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.texture.as_ref())).collect();
+    let texture = pipeline::carry_texture(&outcome, &textures);
+    let classes = pipeline::classes_of(&outcome.mesh, colours.as_ref(), texture.as_ref());
+    let options = Options { classes: vec![classes], ..options.clone() };
     let loaded = Loaded {
         mesh: outcome.mesh,
         colours,
+        texture,
+        legend: Vec::new(),
         format: own.loaded.format,
         unit: own.loaded.unit,
         parts: own.loaded.parts.clone(),

@@ -13,7 +13,7 @@ use super::report::OutputEntry;
 use super::session::{Drafted, Session};
 use super::words;
 use crate::io::{
-    self, Colours, DistanceSamples, Format, GridFormat, Loaded, Unit, WriteError, WriteOptions, WriteProblem,
+    self, DistanceSamples, Format, GridFormat, Loaded, Paint, Unit, WriteError, WriteOptions, WriteProblem,
 };
 use crate::mesh::TriMesh;
 
@@ -102,33 +102,42 @@ pub fn is_direct(path: &Path) -> bool {
     is_stream(path) || path.metadata().is_ok_and(|metadata| !metadata.is_file())
 }
 
-/// Writes `mesh` with its colours, if it has some, reads it back, and lets `judge` look at what was read. Only when that is content
-/// and the run ends well does the file appear under its name; before, it has a temporary name in the same folder, and if
-/// anything fails nothing is left. Streams and devices get their bytes after the judgement.
-pub fn write_verified<T>(
+/// Writes `mesh` with its colours and textures, if it has some, reads it back, and lets `judge` look at what was read. Only when that is content
+/// and the run ends well does the file appear under its name, with those that belong beside it; before, it has a temporary name in the same folder,
+/// and if anything fails nothing is left. Streams and devices get their bytes after the judgement.
+pub fn write_verified<'a, T>(
     target: &Target,
     mesh: &TriMesh,
-    colours: Option<&Colours>,
+    paint: impl Into<Paint<'a>>,
     session: &Session,
     judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
 ) -> Result<(OutputEntry, T), Failure> {
     session.progress.stage("write")?;
+    let paint = paint.into();
+    let judge = |read: &Loaded| {
+        let verdict = judge(read)?;
+        super::paint::check_texture(read, &paint)?;
+        Ok(verdict)
+    };
     if is_direct(&target.path) {
-        write_direct(target, mesh, colours, session, judge)
-    } else {
-        write_file(target, mesh, colours, session, judge)
+        return write_direct(target, mesh, &paint, session, judge);
     }
+    let written = write_file(target, mesh, &Paint { beside: Some(&target.path), ..paint }, session, judge)?;
+    if let Some(texture) = paint.texture {
+        super::paint::write_beside(target, texture, session)?;
+    }
+    Ok(written)
 }
 
 fn write_direct<T>(
     target: &Target,
     mesh: &TriMesh,
-    colours: Option<&Colours>,
+    paint: &Paint<'_>,
     session: &Session,
     judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
 ) -> Result<(OutputEntry, T), Failure> {
     let mut bytes = Vec::new();
-    encode(target, mesh, colours, &mut bytes)?;
+    encode(target, mesh, paint, &mut bytes)?;
     session.progress.stage("verify")?;
     let verdict = judge(&read_back(&bytes, target)?)?;
     session.progress.check()?;
@@ -139,14 +148,14 @@ fn write_direct<T>(
 fn write_file<T>(
     target: &Target,
     mesh: &TriMesh,
-    colours: Option<&Colours>,
+    paint: &Paint<'_>,
     session: &Session,
     judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
 ) -> Result<(OutputEntry, T), Failure> {
     let failed = |e: &std::io::Error| unwritable(&target.path, e);
     let Drafted { file, path } = session.draft(&target.path)?;
     let mut buffer = std::io::BufWriter::with_capacity(1 << 20, &file);
-    encode(target, mesh, colours, &mut buffer)?;
+    encode(target, mesh, paint, &mut buffer)?;
     buffer.flush().map_err(|e| failed(&e))?;
     drop(buffer);
     file.sync_all().map_err(|e| failed(&e))?;
@@ -264,8 +273,8 @@ pub fn unencoded(path: &Path, error: &WriteError) -> Failure {
     }
 }
 
-fn encode(target: &Target, mesh: &TriMesh, colours: Option<&Colours>, out: &mut dyn Write) -> Result<(), Failure> {
-    io::encode_coloured(mesh, colours, &target.options, out).map_err(|error| unencoded(&target.path, &error))
+fn encode(target: &Target, mesh: &TriMesh, paint: &Paint<'_>, out: &mut dyn Write) -> Result<(), Failure> {
+    io::encode_painted(mesh, paint, &target.options, out).map_err(|error| unencoded(&target.path, &error))
 }
 
 fn read_back(bytes: &[u8], target: &Target) -> Result<Loaded, Failure> {

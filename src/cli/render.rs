@@ -1,5 +1,6 @@
 //! `render IN [AFTER] -o PNG`.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use glam::DVec3;
@@ -15,7 +16,8 @@ use super::output::write_side;
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
 use super::slice::{self, Field, SliceChoice, failure};
-use crate::picture::{EdgeDrawing, Image, Painted, RenderOptions, View, render, render_pair};
+use crate::io::{Colours, LegendEntry, shown_colours};
+use crate::picture::{EdgeDrawing, Image, Painted, RenderOptions, View, draw_legend, render, render_pair};
 
 /// Draws one mesh or slice, or two on one sheet.
 pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
@@ -51,6 +53,11 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
         session.say(
             "open edges red, edges of more than two triangles magenta, intersecting triangles yellow, inner sides rust red",
         );
+    }
+    for input in inputs.0.meshes.iter().filter(|input| !input.loaded.legend.is_empty()) {
+        let entry = |LegendEntry { colour: [r, g, b], text }: &LegendEntry| format!("#{r:02X}{g:02X}{b:02X} {text}");
+        let entries: Vec<String> = input.loaded.legend.iter().map(entry).collect();
+        session.say(&format!("{}: {}", input.label, entries.join("; ")));
     }
     for slice in &report.slices {
         session.say(&slice.words(inputs.0.unit_of(&slice.path).as_deref()));
@@ -115,20 +122,26 @@ impl Inputs {
     }
 }
 
-/// One mesh, or two by one camera.
+/// One mesh, or two by one camera, each with the legend of its file.
 fn surfaces(meshes: &[&Input], options: &RenderOptions, session: &Session) -> Result<Vec<Image>, Failure> {
+    let with_legend = |(mut image, input): (Image, &&Input)| {
+        draw_legend(&mut image, &input.loaded.legend);
+        image
+    };
+    let colours: Vec<_> = meshes.iter().map(|input| shown(input)).collect();
+    let painted = |n: usize| Painted { mesh: &meshes[n].loaded.mesh, colours: colours[n].as_deref() };
     let drawn = match meshes {
-        [before, after, ..] => {
-            render_pair(painted(before), painted(after), options, &session.progress).map(|images| images.to_vec())
-        }
-        [one] => render(painted(one), options, &session.progress).map(|image| vec![image]),
+        [_, _, ..] => render_pair(painted(0), painted(1), options, &session.progress).map(|images| images.to_vec()),
+        [_] => render(painted(0), options, &session.progress).map(|image| vec![image]),
         [] => Ok(Vec::new()),
     };
-    drawn.map_err(failure)
+    let images = drawn.map_err(failure)?;
+    Ok(images.into_iter().zip(meshes).map(with_legend).collect())
 }
 
-fn painted(input: &Input) -> Painted<'_> {
-    Painted { mesh: &input.loaded.mesh, colours: input.loaded.colours.as_ref() }
+/// The colours that the mesh shows without its images.
+fn shown(input: &Input) -> Option<Cow<'_, Colours>> {
+    shown_colours(input.loaded.colours.as_ref(), input.loaded.texture.as_ref())
 }
 
 fn options(args: &RenderArgs) -> RenderOptions {

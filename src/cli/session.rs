@@ -11,6 +11,7 @@ use std::time::Instant;
 use super::args::CommonArgs;
 use super::ending::Ending;
 use super::exit::{Exit, Failure};
+use super::files::KeptFiles;
 use super::progress_bar::Meter;
 use super::{machine, output};
 use crate::io::draft::{Draft, flush_folders, publish};
@@ -24,6 +25,8 @@ pub struct Session {
     pub progress: Progress,
     /// Whether `-v` was given.
     pub verbose: bool,
+    /// Files that must not be written by chance.
+    pub kept: KeptFiles,
     quiet: bool,
     meter: Arc<Meter>,
     ending: Ending,
@@ -54,7 +57,16 @@ impl Session {
         let ending = Ending::watch(deadline, max_memory, flag)?;
         let fewer = machine::start_threads(common.threads)?;
         let lines = RefCell::new(fewer.iter().map(|line| format!("note: {line}")).collect());
-        Ok(Self { start, progress, verbose: common.verbose, quiet: common.quiet, meter, ending, lines })
+        Ok(Self {
+            start,
+            progress,
+            verbose: common.verbose,
+            kept: KeptFiles::default(),
+            quiet: common.quiet,
+            meter,
+            ending,
+            lines,
+        })
     }
 
     /// A line for the user at the end, when all files are in their places, unless `-q`.

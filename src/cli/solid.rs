@@ -10,15 +10,16 @@ use super::change::{self, Change, Changed};
 use super::exit::{Asked, Exit, Failure};
 use super::input::{self, Input};
 use super::length::{Scale, Simplify};
-use super::output::{self, Target, write_verified};
+use super::output::{Target, write_verified};
+use super::paint::{self, Arranged};
 use super::report::{PlanEntry, RunReport};
 use super::session::Session;
-use super::{backend, doubts, keep, limits, machine, negative, summary, words};
+use super::{backend, doubts, keep, limits, machine, map, negative, summary, words};
 use crate::fit::{FitOptions, rounded};
-use crate::io::{self, Colours, Format, Loaded, Rgba, Unit, WriteOptions};
+use crate::io::{Colours, Format, Loaded, Paint, Unit};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
-use crate::pipeline::{self, Options, Outcome, Precision, TriangleSource, VoxelSize};
+use crate::pipeline::{self, Options, Precision, VoxelSize};
 use crate::sdf::{RobustOptions, Trust};
 use crate::vote::VoteRule;
 
@@ -79,12 +80,13 @@ fn options(
     let scale = Scale { unit, diagonal, voxel: Some(voxel.spacing(longest)) };
     let options = Options {
         fit: fit(args, &scale, inputs)?,
-        classes: inputs.iter().map(|input| pipeline::classes(input.loaded.colours.as_ref())).collect(),
+        classes: inputs.iter().map(Input::classes).collect(),
         orient: args.orient.into(),
         rule: args.vote.into(),
         robust: RobustOptions { trust: trust(args.vote.into()), ..RobustOptions::default() },
         collapse: !args.no_collapse,
-        max_memory: machine::memory_cap(args.max_memory),
+        // What the textures take is taken already.
+        max_memory: machine::memory_cap(args.max_memory).map(|cap| cap.saturating_sub(input::held_by_textures(inputs))),
         backend: args.backend.into(),
         precision: target.map_or(Precision::Double, |target| Precision::of_format(target.options.format)),
         ..Options::new(voxel)
@@ -97,10 +99,12 @@ fn trust(rule: VoteRule) -> Trust {
     if rule == VoteRule::Winding { Trust::All } else { Trust::Sure }
 }
 
-/// What `--no-fit`, `--rebuild` and `--simplify` ask for. Colours that vary within triangles would be smeared over the
+/// What `--no-fit`, `--rebuild` and `--simplify` ask for. Colours and textures that vary within triangles would be smeared over the
 /// large triangles of simplified flat parts, so with them all triangles are kept unless it is asked for.
 fn fit(args: &SolidArgs, scale: &Scale, inputs: &[Input]) -> Result<Option<FitOptions>, Failure> {
-    let varying = |input: &Input| matches!(input.loaded.colours, Some(Colours::Vertices(_) | Colours::Corners(_)));
+    let varying = |input: &Input| {
+        matches!(input.loaded.colours, Some(Colours::Vertices(_) | Colours::Corners(_))) || input.has_images()
+    };
     let usual = FitOptions::default();
     let tolerance = match (args.simplify, scale.voxel) {
         (Some(Simplify::Off), _) => 0.0,
@@ -210,7 +214,6 @@ fn make(
             canal_of = left.into_iter().map(|t| canal_of[t]).collect();
         }
     }
-    drop(meshes);
     report.stages.extend(outcome.report.stages.iter().cloned());
     report.warnings.extend(outcome.report.warnings.iter().cloned());
     report.pipeline = Some(outcome.report.clone());
@@ -218,12 +221,16 @@ fn make(
     let writes = target.is_some() || args.map.is_some();
     let withheld = writes && !lost.is_empty() && !args.keeps_partial();
     if let Some(path) = args.map.as_ref().filter(|_| !withheld) {
-        report.timed("map", |_| write_map(path, &outcome, &canal_of, session))?;
+        report.timed("map", |_| map::write(path, &outcome, &meshes, &canal_of, session))?;
     }
+    drop(meshes);
     if let Some(target) = target.filter(|_| !withheld) {
         let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
         let colours = pipeline::carry_colours(&outcome, &operands);
-        write(&outcome.mesh, colours.as_ref(), target, session, report)?;
+        let textures: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.texture.as_ref())).collect();
+        let texture = pipeline::carry_texture(&outcome, &textures);
+        let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
+        write(&outcome.mesh, paint, target, session, report)?;
     }
     let beyond = limits::beyond_memory(report, args.max_memory);
     report.warnings.extend(beyond.iter().chain(lost.iter().filter(|_| !withheld)).cloned());
@@ -241,16 +248,17 @@ fn make(
 }
 
 /// Writes the result and judges the written file.
-pub(super) fn write(
-    mesh: &TriMesh,
-    colours: Option<&Colours>,
+pub(super) fn write<'a>(
+    mesh: &'a TriMesh,
+    paint: impl Into<Paint<'a>>,
     target: &Target,
     session: &Session,
     report: &mut RunReport,
 ) -> Result<(), Failure> {
-    let lost = colours.and_then(|c| super::convert::lost_colours(c, mesh, target.options.format));
-    report.warnings.extend(lost);
-    let (stored, moved) = stored(mesh, target.options.format);
+    let paint = paint.into();
+    report.warnings.extend(paint::lost(mesh, &paint, target));
+    let arranged = Arranged::new(mesh, &paint, target.options.format);
+    let (stored, moved) = stored(&arranged.mesh, target.options.format);
     if let Some(moved) = moved {
         report.warnings.push(rounding(moved, target.options.format));
     }
@@ -259,7 +267,7 @@ pub(super) fn write(
     report.warnings.extend(of_unit);
     let factor = target.options.factor();
     let (entry, validity) = report.timed("write and verify", |_| {
-        write_verified(target, &stored, colours, session, |read| judge(read, (&stored, factor), moved, session))
+        write_verified(target, &stored, arranged.paint(), session, |read| judge(read, (&stored, factor), moved, session))
     })?;
     report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
     Ok(())
@@ -280,35 +288,6 @@ fn rounding(moved: f64, format: Format) -> String {
         "{format} holds single precision: so far from the origin it moves vertices by up to {}; OBJ, PLY, OFF and 3MF keep them",
         words::number(moved)
     )
-}
-
-/// What is original, and what closes a hole.
-const ORIGINAL: Rgba = [205, 210, 215, 255];
-const MADE_UP: Rgba = [220, 60, 40, 255];
-
-/// Walls of canals, by their numbers.
-const CANALS: [Rgba; 6] = [
-    [220, 60, 40, 255],
-    [40, 120, 220, 255],
-    [240, 160, 30, 255],
-    [60, 160, 70, 255],
-    [150, 80, 190, 255],
-    [0, 170, 180, 255],
-];
-
-/// Writes the result coloured by where its triangles come from, and by the canals that they bound.
-fn write_map(path: &Path, outcome: &Outcome, canal_of: &[u32], session: &Session) -> Result<(), Failure> {
-    let colour = |(t, source): (usize, &TriangleSource)| match (canal_of.get(t), source) {
-        (Some(&canal), _) if canal > 0 => CANALS[(canal as usize - 1) % CANALS.len()],
-        (_, TriangleSource::Closed) => MADE_UP,
-        _ => ORIGINAL,
-    };
-    let colours = Colours::Faces(outcome.sources.iter().enumerate().map(colour).collect());
-    session.progress.check()?;
-    let mut bytes = Vec::new();
-    io::encode_coloured(&outcome.mesh, Some(&colours), &WriteOptions::new(Format::Ply), &mut bytes)
-        .map_err(|error| output::unencoded(path, &error))?;
-    output::write_side(path, &bytes, session)
 }
 
 /// Whether the file as read back holds the mesh that was made, times a factor, and keeps the program's promise. `moved`: how far

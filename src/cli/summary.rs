@@ -9,7 +9,7 @@ use super::words::{self, UnitName};
 use crate::io::{Loaded, Unit};
 use crate::mesh::Validity;
 use crate::morphology::Operation;
-use crate::pipeline::{Plan, Report, ThickenReport};
+use crate::pipeline::{Plan, Report, ThickenReport, TriangleKind};
 
 /// A label and what stands behind it; rows of one block are aligned.
 pub type Row = (&'static str, String);
@@ -154,15 +154,9 @@ fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
             Operation::Open => "opened by a ball of",
         };
         let volume = words::percent_change(change.volume_before, change.volume_after);
-        parts.push(format!(
-            "{word} {by}: volume {volume}; {} new (--map shows them)",
-            words::plural(change.made, "triangle")
-        ));
+        parts.push(format!("{word} {by}: volume {volume}; {} new", words::plural(change.made, "triangle")));
     } else if let Some(thick) = &pipeline.thicken {
         parts.push(thickened(thick, pipeline.closed_triangles, unit));
-    } else if pipeline.closed_triangles > 0 {
-        let triangles = words::plural(pipeline.closed_triangles, "triangle");
-        parts.push(format!("{triangles} of the result close holes (--map shows them)"));
     }
     parts
 }
@@ -175,12 +169,12 @@ fn kept(pipeline: &Report) -> Vec<String> {
         let shells = words::plural(standing.left_out, "closed surface");
         parts.push(format!("{shells} left out, inside of others or outside of the result"));
     }
-    parts.push(match (pipeline.kept(), pipeline.of()) {
-        (0, _) => "the surface was built anew".into(),
-        (kept, of) if kept == of => "every triangle was kept as it is".into(),
-        (kept, of) => {
-            let (kept, of) = (words::count(kept), words::plural(of, "triangle"));
-            format!("{kept} of {of} kept as they are; the surface between them was built anew")
+    let counts = &pipeline.triangles;
+    parts.push(match (counts.rebuilt, counts.made_up) {
+        (0, 0) => "every triangle was kept as it is".into(),
+        _ => {
+            let of = |kind: TriangleKind| format!("{} {}", words::count(counts.count(kind)), kind.word());
+            format!("of its triangles {} (--map shows which)", TriangleKind::ALL.map(of).join(", "))
         }
     });
     parts
@@ -198,7 +192,7 @@ fn thickened(thick: &ThickenReport, made: usize, unit: UnitName<'_>) -> String {
         "there was no solid before".into()
     };
     let made = words::plural(made, "triangle");
-    format!("walls{sheets} grown to {least}: {volume}; {made} new (--map shows them)")
+    format!("walls{sheets} grown to {least}: {volume}; {made} new")
 }
 
 /// The voxel size, and how many of them.

@@ -28,7 +28,12 @@ pub struct DeviationMap {
 impl DeviationMap {
     /// Red, green and blue of each vertex: blue inside the reference, white on it, red outside.
     pub fn colours(&self) -> Vec<[u8; 3]> {
-        self.distances.iter().map(|&distance| colour(distance, self.range)).collect()
+        self.distances.iter().map(|&distance| self.colour(distance)).collect()
+    }
+
+    /// Red, green and blue that stand for a distance.
+    pub fn colour(&self, distance: f64) -> [u8; 3] {
+        colour(distance, self.range)
     }
 }
 

@@ -241,6 +241,9 @@ pub enum WriteProblem {
         /// How many triangles, or vertices, there are.
         expected: usize,
     },
+    /// Textures whose lists are not as long as the mesh has triangles, or that name materials or images that are not there.
+    #[error("the textures do not fit the mesh")]
+    Textures,
     /// The format counts in 32 bits and the mesh is larger; PLY holds the most.
     #[error("the mesh is too large for {format}")]
     TooLarge {

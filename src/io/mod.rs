@@ -35,6 +35,7 @@ mod save;
 mod soup;
 mod stl;
 mod text;
+mod texture;
 mod three_mf;
 mod unit;
 
@@ -55,8 +56,9 @@ pub use grids::{
     GridReadProblem, GridValues, SampleBlocks, SparseValues, Tile, UnknownGridFormat, encode_grid, read_grid,
     read_grid_bytes, read_grid_within, write_grid,
 };
-pub use ply::{VertexMap, encode_vertex_map};
+pub use ply::{FaceMap, LegendEntry, VertexMap, encode_face_map, encode_vertex_map};
 pub use save::save_bytes;
+pub use texture::{ImageKind, Material, SideFile, TexCoords, TextureImage, TextureMap, shown_colours};
 pub use unit::{Unit, UnknownUnit};
 
 /// A named piece of a file: an object, a solid, a node.
@@ -84,6 +86,10 @@ pub struct Loaded {
     pub mesh: TriMesh,
     /// The colours of `mesh`, one for each triangle, vertex or corner; `None` where the file has none.
     pub colours: Option<Colours>,
+    /// The textures of `mesh`: coordinates, materials, images; `None` where the file has none.
+    pub texture: Option<TextureMap>,
+    /// What the file says that its colours mean: a map in PLY.
+    pub legend: Vec<LegendEntry>,
     /// The format that was found.
     pub format: Format,
     /// The unit of length that the file states.
@@ -143,8 +149,8 @@ pub fn read(path: &Path) -> Result<Loaded, ReadError> {
 }
 
 /// Reads a mesh from `bytes`. With `format` none, it is told by content, then by the extension of
-/// `path`. `path` also names the file in errors and is where a glTF's external buffers lie beside;
-/// without it they are refused.
+/// `path`. `path` also names the file in errors and is where a glTF's external buffers, materials of OBJ and
+/// images lie beside; without it the buffers are refused, and materials and images are left out.
 ///
 /// # Errors
 /// When the bytes are not a sound file: see [`ReadProblem`].
@@ -166,8 +172,8 @@ pub fn read_bytes(bytes: &[u8], format: Option<Format>, path: Option<&Path>) -> 
         _ if misnamed.is_some() => Err(misnamed.unwrap_or(ReadProblem::UnknownFormat).into()),
         None => Err(ReadProblem::UnknownFormat.into()),
         Some(Format::Stl) => stl::read(bytes),
-        Some(Format::Obj) => obj::read(bytes),
-        Some(Format::Ply) => ply::read(bytes),
+        Some(Format::Obj) => obj::read(bytes, path),
+        Some(Format::Ply) => ply::read(bytes, path),
         Some(Format::Off) => off::read(bytes),
         Some(Format::Glb) => gltf::read_glb(bytes, path),
         Some(Format::Gltf) => gltf::read_json(bytes, path),
@@ -206,7 +212,24 @@ pub fn write_coloured(
 /// # Errors
 /// See [`WriteProblem`]. The mesh is checked before the first byte is written.
 pub fn encode(mesh: &TriMesh, options: &WriteOptions, out: &mut dyn Write) -> Result<(), WriteError> {
-    encode_coloured(mesh, None, options, out)
+    encode_painted(mesh, &Paint::default(), options, out)
+}
+
+/// What a surface looks like.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Paint<'a> {
+    /// Colours of triangles, vertices or corners.
+    pub colours: Option<&'a Colours>,
+    /// Textures.
+    pub texture: Option<&'a TextureMap>,
+    /// Where the file will lie, which names the files beside it ([`TextureMap::side_files`]); `None` for a stream, which has none.
+    pub beside: Option<&'a Path>,
+}
+
+impl<'a> From<Option<&'a Colours>> for Paint<'a> {
+    fn from(colours: Option<&'a Colours>) -> Self {
+        Self { colours, ..Self::default() }
+    }
 }
 
 /// [`encode`] with the colours of `mesh`, one for each triangle, vertex or corner. What the format cannot hold is left
@@ -221,7 +244,26 @@ pub fn encode_coloured(
     options: &WriteOptions,
     out: &mut dyn Write,
 ) -> Result<(), WriteError> {
+    encode_painted(mesh, &colours.into(), options, out)
+}
+
+/// [`encode_coloured`] with textures, as far as the format holds them; [`TextureMap::lost_in`] tells what it does not. Materials of OBJ, and images
+/// of OBJ and PLY, are files of their own, which [`TextureMap::side_files`] makes; the mesh names them. glTF writes the triangles of each
+/// material in one piece if they are in one, and in several if not.
+///
+/// # Errors
+/// See [`WriteProblem`]. Mesh, colours and textures are checked before the first byte is written.
+pub fn encode_painted(
+    mesh: &TriMesh,
+    paint: &Paint<'_>,
+    options: &WriteOptions,
+    out: &mut dyn Write,
+) -> Result<(), WriteError> {
     check(mesh, options.format)?;
+    let Paint { colours, texture, .. } = *paint;
+    if texture.is_some_and(|texture| !texture.fits(mesh)) {
+        return Err(WriteProblem::Textures.into());
+    }
     if let Some([found, expected]) = colours.map(|colours| colours.counts(mesh))
         && found != expected
     {
@@ -230,13 +272,13 @@ pub fn encode_coloured(
     match options.format {
         Format::Stl if options.ascii => stl::write_ascii(mesh, out),
         Format::Stl => stl::write_binary(mesh, out),
-        Format::Obj => obj::write(mesh, colours, out),
-        Format::Ply if options.ascii => ply::write_ascii(mesh, colours, out),
-        Format::Ply => ply::write_binary(mesh, colours, out),
-        Format::Off => off::write(mesh, colours, out),
-        Format::Glb => gltf::write_glb(mesh, colours, options.unit, out),
-        Format::Gltf => gltf::write_json(mesh, colours, options.unit, out),
-        Format::ThreeMf => three_mf::write(mesh, colours, options.unit, out),
+        Format::Obj => obj::write(mesh, paint, out),
+        Format::Ply if options.ascii => ply::write_ascii(mesh, paint, out),
+        Format::Ply => ply::write_binary(mesh, paint, out),
+        Format::Off => off::write(mesh, shown_colours(colours, texture).as_deref(), out),
+        Format::Glb => gltf::write_glb(mesh, paint, options.unit, out),
+        Format::Gltf => gltf::write_json(mesh, paint, options.unit, out),
+        Format::ThreeMf => three_mf::write(mesh, paint, options.unit, out),
     }
 }
 

@@ -275,6 +275,6 @@ pub(super) fn write(mesh: &TriMesh, colours: Option<&Colours>, out: &mut dyn Wri
     text.text(" ");
     text.integer(mesh.triangles.len() as u64);
     text.text(" 0\n");
-    text.rows(mesh, &tails)?;
+    text.rows(mesh, &tails, |_, _| {})?;
     Ok(text.finish()?)
 }

@@ -6,6 +6,7 @@ use rustc_hash::FxHashMap;
 use super::colour::Gathered;
 use super::error::{ReadError, ReadProblem};
 use super::polygon;
+use super::texture::Woven;
 use super::{Format, Loaded, Negative, Part, Unit};
 use crate::mesh::TriMesh;
 
@@ -24,6 +25,8 @@ pub(super) struct Soup {
     pub(super) points: usize,
     /// Colours of what has some.
     pub(super) colours: Gathered,
+    /// Textures of what has some.
+    pub(super) texture: Woven,
     parts: Vec<Part>,
     narrow_faces: usize,
     /// Faces of more than three corners, one of which has no finite place.
@@ -40,6 +43,7 @@ impl Soup {
             warnings: Vec::new(),
             points: 0,
             colours: Gathered::default(),
+            texture: Woven::default(),
             parts: Vec::new(),
             narrow_faces: 0,
             unplaced_faces: 0,
@@ -83,6 +87,23 @@ impl Soup {
         }
     }
 
+    /// [`Soup::face`] for corners that have something of their own: `own` gets, for each triangle that is added, the numbers of
+    /// its corners among `corners`.
+    pub(super) fn face_of_corners(&mut self, corners: &[u32], own: &mut Vec<[u32; 3]>) {
+        own.clear();
+        if corners.len() < 4 || corners.iter().any(|&v| !self.positions[v as usize].is_finite()) {
+            let before = self.triangles.len();
+            self.face(corners);
+            own.extend((before..self.triangles.len()).map(|_| [0, 1, 2]));
+            return;
+        }
+        let places: Vec<DVec3> = corners.iter().map(|&v| self.positions[v as usize]).collect();
+        let numbers: Vec<u32> = (0..corners.len() as u32).collect();
+        let whole = polygon::triangulate(&places, &numbers, &mut self.allowance, own);
+        self.folded_polygons += usize::from(!whole);
+        self.triangles.extend(own.iter().map(|t| t.map(|k| corners[k as usize])));
+    }
+
     /// Adds a triangle strip: every second triangle is turned.
     pub(super) fn strip(&mut self, corners: &[u32]) {
         self.triangles.extend(
@@ -115,7 +136,20 @@ impl Soup {
         self.triangles.shrink_to_fit();
         let mesh = TriMesh { positions: self.positions, triangles: self.triangles };
         let colours = self.colours.finish(&mesh, &mut self.warnings);
-        Ok(Loaded { mesh, colours, format, unit, parts: self.parts, negative: None, warnings: self.warnings })
+        let texture = self.texture.finish(mesh.triangles.len(), &mut self.warnings);
+        // Beside a texture white says nothing.
+        let colours = colours.filter(|colours| texture.is_none() || !colours.is_white());
+        Ok(Loaded {
+            mesh,
+            colours,
+            texture,
+            legend: Vec::new(),
+            format,
+            unit,
+            parts: self.parts,
+            negative: None,
+            warnings: self.warnings,
+        })
     }
 
     /// The finished mesh of what is taken away from another; `None` when there is nothing of it.
@@ -153,6 +187,7 @@ impl Soup {
         };
         let triangles: Vec<Option<[u32; 3]>> = self.triangles.iter().map(renumbered).collect();
         self.colours.keep(&numbers, &triangles);
+        self.texture.keep(&triangles);
         let (points, faces) = (self.positions.len() - left as usize, triangles.iter().filter(|t| t.is_none()).count());
         self.warnings.push(format!(
             "{} with a coordinate that is no finite number left out, and {} there",

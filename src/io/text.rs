@@ -99,6 +99,12 @@ pub(super) fn number(word: &[u8]) -> Option<f64> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
+/// A decimal number in single precision; what is no number, or not finite there, is NaN.
+#[inline]
+pub(super) fn single(word: &[u8]) -> f32 {
+    std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).unwrap_or(f32::NAN)
+}
+
 /// A whole number.
 #[inline]
 pub(super) fn integer(word: &[u8]) -> Option<i64> {
@@ -150,6 +156,13 @@ impl<'a> TextOut<'a> {
         self.digits(zmij::Buffer::new().format(value));
     }
 
+    /// A level of light or opacity, from 0 to 1.
+    #[inline]
+    pub(super) fn level(&mut self, level: u8) {
+        // Four digits tell 256 levels apart.
+        self.number((f64::from(level) / 255.0 * 1e4).round() / 1e4);
+    }
+
     /// A finite number in the shortest form that reads back as the same `f32`; as `f64` it may not.
     #[inline]
     pub(super) fn short_number(&mut self, value: f32) {
@@ -174,8 +187,14 @@ impl<'a> TextOut<'a> {
         }
     }
 
-    /// A line for each position, then a line for each triangle: 3 and its vertices, from 0. Each ends in its tail.
-    pub(super) fn rows(&mut self, mesh: &TriMesh, tails: &Tails<'_>) -> io::Result<()> {
+    /// A line for each position, then a line for each triangle: 3 and its vertices, from 0. Each ends in its tail; `more` follows that of a
+    /// triangle.
+    pub(super) fn rows(
+        &mut self,
+        mesh: &TriMesh,
+        tails: &Tails<'_>,
+        more: impl Fn(usize, &mut Self),
+    ) -> io::Result<()> {
         for (vertex, p) in mesh.positions.iter().enumerate() {
             for (k, x) in p.to_array().into_iter().enumerate() {
                 self.text(if k == 0 { "" } else { " " });
@@ -192,6 +211,7 @@ impl<'a> TextOut<'a> {
                 self.integer(u64::from(*v));
             }
             self.channels(tails.face(face));
+            more(face, self);
             self.text("\n");
             self.pass_on()?;
         }

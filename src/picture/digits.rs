@@ -1,6 +1,6 @@
-//! Numbers in a picture: a font of 5 x 7 dots, enlarged.
+//! Numbers and words in a picture: a font of 5 x 7 dots, enlarged.
 
-use super::Image;
+use super::{Image, letters};
 
 /// Dots across and down.
 const DOTS: [u32; 2] = [5, 7];
@@ -24,8 +24,7 @@ fn dots(character: char) -> [u8; 7] {
         '9' => [0b01110, 0b10001, 0b10001, 0b01111, 0b00001, 0b00010, 0b01100],
         '-' => [0, 0, 0, 0b11111, 0, 0, 0],
         '.' => [0, 0, 0, 0, 0, 0b01100, 0b01100],
-        'e' => [0, 0, 0b01110, 0b10001, 0b11111, 0b10000, 0b01110],
-        _ => [0; 7],
+        other => letters::dots(other),
     }
 }
 
@@ -35,7 +34,7 @@ pub(super) fn size(text: &str, scale: u32) -> [u32; 2] {
     [across * scale, DOTS[1] * scale]
 }
 
-/// Draws `text`, made of digits, `-`, `.` and `e`, with its top left corner at (`left`, `top`).
+/// Draws `text` with its top left corner at (`left`, `top`).
 pub(super) fn draw(image: &mut Image, text: &str, [left, top]: [u32; 2], scale: u32) {
     for (n, character) in text.chars().enumerate() {
         let left = left + n as u32 * ADVANCE * scale;

@@ -8,6 +8,8 @@ mod camera;
 mod colour_map;
 mod digits;
 mod image;
+mod legend;
+mod letters;
 mod light;
 mod lines;
 mod occlusion;
@@ -20,6 +22,7 @@ use rayon::prelude::*;
 
 pub use camera::View;
 pub use image::Image;
+pub use legend::draw_legend;
 pub use ramp::ramp_colour;
 pub use slice::{Axis, SliceColours, SlicePlane, SliceSamples, sample_slice, slice};
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::frame::Frame;
 use super::morphology::{Run, offset_voxel, usable};
 use super::plan::{Offsets, check_offsets};
-use super::{Error, MorphologyOptions, Options, Outcome, boolean, stages};
+use super::{Error, MorphologyOptions, Options, Outcome, boolean, kind, stages};
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
 use crate::morphology::{self, Balls, Body, Canal, Operation};
@@ -96,7 +96,7 @@ pub fn canals(input: &TriMesh, options: &CanalOptions, progress: &Progress) -> R
         roundings: canals.roundings,
         removed,
     });
-    Ok(CanalOutcome { outcome: frame.global(outcome), canal_of })
+    Ok(CanalOutcome { outcome: frame.global(kind::counted(outcome, std::slice::from_ref(input))), canal_of })
 }
 
 /// The numbers that are meant, of `count`.

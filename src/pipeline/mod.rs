@@ -8,6 +8,7 @@ mod crumbs;
 mod distance;
 mod field;
 mod frame;
+mod kind;
 mod morphology;
 mod order;
 mod plan;
@@ -18,6 +19,7 @@ mod report;
 mod solid;
 mod stages;
 mod survey;
+mod textures;
 mod thicken;
 mod thickness;
 mod topology;
@@ -35,10 +37,12 @@ pub use field::{
     field_values,
 };
 pub use crumbs::{Dropped, drop_smaller};
+pub use kind::{TriangleCounts, TriangleKind, kinds};
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
 pub use plan::{plan, plan_canals, plan_morphology, plan_thicken};
 pub use prepare::MAX_RESOLUTION;
 pub use report::{LdiReport, Report, StageTime, ThinRegion, ThinReport};
+pub use textures::{carry_texture, classes_of};
 pub use thicken::{SheetSide, ThickenOptions, ThickenReport, thicken};
 pub use thickness::{LengthsReport, ThicknessReport, thickness};
 pub use topology::{LostBody, Topology, TopologyReport};
@@ -316,5 +320,5 @@ fn evaluate(
             }
         },
     };
-    Ok(frame.global(report::finished(outcome, &apart, stages)))
+    Ok(frame.global(kind::counted(report::finished(outcome, &apart, stages), operands)))
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::crumbs::without_made_crumbs;
 use super::frame::Frame;
 use super::plan::{Offsets, check_offsets};
-use super::{Error, Options, Outcome, TriangleSource, boolean, prepare, refine, stages};
+use super::{Error, Options, Outcome, TriangleSource, boolean, kind, prepare, refine, stages};
 use crate::fit::{Facets, FitOptions, FitReport, Sides, Surface, Wanted, fit};
 use crate::lattice::Lattice;
 use crate::ldi::{Evidence, Expression};
@@ -77,7 +77,7 @@ pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progr
         Operation::Close => run.refined(finer, |run| run.there_and_back(radius, &mut stages))?,
         Operation::Open => run.refined(finer, |run| run.there_and_back(-radius, &mut stages))?,
     };
-    Ok(frame.global(run.finish(&outcome, made, stages)))
+    Ok(frame.global(kind::counted(run.finish(&outcome, made, stages), std::slice::from_ref(input))))
 }
 
 /// Voxels of a radius, at least: of less, a ball passes between voxels; back and forth, chords of less are off by more than a

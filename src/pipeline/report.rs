@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::apart::Apart;
 use super::stages::Stages;
 use super::{
-    BackendReport, CanalReport, Dropped, MorphologyReport, Outcome, StandingReport, ThickenReport, TopologyReport, solid,
-    topology,
+    BackendReport, CanalReport, Dropped, MorphologyReport, Outcome, StandingReport, ThickenReport, TopologyReport,
+    TriangleCounts, solid, topology,
 };
 
 use crate::fit::FitReport;
@@ -48,6 +48,8 @@ pub struct Report {
     pub smaller: Dropped,
     /// Triangles of the result that close holes, or that morphology has made.
     pub closed_triangles: usize,
+    /// How many triangles of the result are kept, rebuilt and made up.
+    pub triangles: TriangleCounts,
     /// Wall-clock time of each stage, in order.
     pub stages: Vec<StageTime>,
     /// Sentences a user should read, most important first.

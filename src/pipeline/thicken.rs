@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::frame::Frame;
 use super::morphology::{Run, usable, volume};
 use super::plan::{Offsets, area, check_offsets};
-use super::{Error, MorphologyOptions, Options, Outcome, TriangleSource, VoxelSize, boolean, prepare, stages};
+use super::{Error, MorphologyOptions, Options, Outcome, TriangleSource, VoxelSize, boolean, kind, prepare, stages};
 use crate::digits;
 use crate::ldi::Expression;
 use crate::mesh::{Pseudonormals, TriMesh};
@@ -133,7 +133,7 @@ pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -
     let after = volume(&outcome.mesh);
     outcome.report.thicken =
         Some(ThickenReport { least, thin_area, sheet_area, volume_before: before, volume_after: after });
-    Ok(frame.global(outcome))
+    Ok(frame.global(kind::counted(outcome, std::slice::from_ref(input))))
 }
 
 /// The union of the solid and what was grown, with triangles of the solid where it stays the surface.

@@ -5,12 +5,15 @@ use std::path::Path;
 use meshwright::io::{Colours, Format, read_bytes};
 use proptest::prelude::*;
 
-use crate::support::{assert_sound, encoded, encoded_in_colour, every_form, tetrahedron, zipped};
+use crate::support::{
+    assert_sound, encoded, encoded_in_colour, encoded_with_textures, every_form, tetrahedron, zipped,
+};
 
 /// The committed seeds of the fuzzer and every form that the writers have.
 fn originals() -> Vec<(Format, Vec<u8>)> {
     let mut all: Vec<_> = every_form().iter().map(|o| (o.format, encoded(&tetrahedron(), o))).collect();
     all.extend(every_form().iter().map(|o| (o.format, encoded_in_colour(&tetrahedron(), &four_colours(), o))));
+    all.extend(every_form().iter().map(|o| (o.format, encoded_with_textures(&tetrahedron(), o))));
     let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds");
     for format in Format::ALL {
         let folder = seeds.join(if format == Format::ThreeMf { "three_mf" } else { format.name() });

@@ -1,8 +1,10 @@
 //! Meshes and checks that several tests share.
 
 use glam::DVec3;
-use meshwright::io::{Colours, Format, Loaded, WriteOptions, encode, encode_coloured};
+use meshwright::io::{Colours, Format, Loaded, Paint, WriteOptions, encode, encode_coloured, encode_painted};
 use meshwright::mesh::TriMesh;
+
+use crate::common::textured;
 
 /// What every reader promises.
 pub fn assert_sound(loaded: &Loaded) {
@@ -21,6 +23,8 @@ pub fn assert_sound(loaded: &Loaded) {
         let counted: usize = negative.parts.iter().map(|part| part.triangles.len()).sum();
         assert_eq!(counted, mesh.triangles.len());
     }
+    assert!(loaded.texture.as_ref().is_none_or(|texture| texture.fits(mesh)));
+    assert!(loaded.texture.iter().flat_map(|t| &t.coordinates).flatten().flatten().flatten().all(|x| x.is_finite()));
     match &loaded.colours {
         None => {}
         Some(Colours::Faces(colours)) => assert_eq!(colours.len(), mesh.triangles.len()),
@@ -48,6 +52,15 @@ pub fn encoded(mesh: &TriMesh, options: &WriteOptions) -> Vec<u8> {
 pub fn encoded_in_colour(mesh: &TriMesh, colours: &Colours, options: &WriteOptions) -> Vec<u8> {
     let mut bytes = Vec::new();
     encode_coloured(mesh, Some(colours), options, &mut bytes).unwrap_or_else(|error| panic!("{error}"));
+    bytes
+}
+
+/// The mesh with textures of its own making as a file of `format`.
+pub fn encoded_with_textures(mesh: &TriMesh, options: &WriteOptions) -> Vec<u8> {
+    let texture = textured::of_sides(mesh, [textured::png([1, 2, 3]), textured::jpeg()]);
+    let paint = Paint { colours: None, texture: Some(&texture), beside: Some("a.obj".as_ref()) };
+    let mut bytes = Vec::new();
+    encode_painted(mesh, &paint, options, &mut bytes).unwrap_or_else(|error| panic!("{error}"));
     bytes
 }
 

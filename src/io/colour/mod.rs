@@ -106,6 +106,14 @@ impl Colours {
         }
     }
 
+    /// Whether all are opaque white.
+    pub(super) fn is_white(&self) -> bool {
+        match self {
+            Self::Faces(colours) | Self::Vertices(colours) => colours.iter().all(|c| *c == WHITE),
+            Self::Corners(colours) => colours.iter().flatten().all(|c| *c == WHITE),
+        }
+    }
+
     /// How many colours there are, and how many there should be for `mesh`.
     pub(super) fn counts(&self, mesh: &TriMesh) -> [usize; 2] {
         match self {

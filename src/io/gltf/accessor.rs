@@ -107,6 +107,30 @@ pub(super) fn colours(
     vectors(root, buffers, index, Shape { size: channels * kind.size(), zero, decode }, allowance)
 }
 
+/// The texture coordinates behind accessor `index`.
+pub(super) fn coordinates(
+    root: &Root,
+    buffers: &Buffers<'_>,
+    index: Index<Accessor>,
+    allowance: &mut Expansion,
+) -> Result<Vec<[f32; 2]>, ReadError> {
+    let fail = |problem| ReadError::item(item(index), problem);
+    let accessor = accessor(root, index)?;
+    let kind = component_type(accessor).map_err(fail)?;
+    if !matches!(accessor.type_, Checked::Valid(Type::Vec2)) {
+        return Err(fail(ReadProblem::syntax("coordinates of type VEC2", "another type")));
+    }
+    let normalized = accessor.normalized;
+    let decode = |field: &[u8]| {
+        let mut place = [0.0; 2];
+        for (x, part) in place.iter_mut().zip(field.chunks_exact(kind.size())) {
+            *x = component(part, kind, normalized) as f32;
+        }
+        place
+    };
+    vectors(root, buffers, index, Shape { size: 2 * kind.size(), zero: [0.0; 2], decode }, allowance)
+}
+
 /// The translations, rotations or scales of instances behind accessor `index`, each of `width` numbers.
 pub(super) fn instance_values(
     root: &Root,

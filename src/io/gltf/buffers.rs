@@ -2,9 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::Read;
-use std::path::{Component, Path, PathBuf};
+use std::path::Path;
 
 use base64::Engine;
 use base64::alphabet::STANDARD;
@@ -13,14 +11,12 @@ use gltf_json::{Index, Root, buffer::View};
 
 use super::super::error::{ReadError, ReadProblem};
 use super::super::text::quoted;
+use super::super::texture::{MOST_BESIDE, file_beside, read_beside};
 
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
     GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
 );
-
-/// Bytes that all files beside a document may have together. A GLB file cannot hold more either.
-const MOST_BESIDE: u64 = 1 << 32;
 
 /// Every buffer, whole.
 pub(super) struct Buffers<'a> {
@@ -97,13 +93,7 @@ pub(super) fn missing(index: usize, count: usize, what: &'static str) -> ReadPro
 /// What `uri` leads to: of a file at most the first `wanted` bytes, which are taken from those that are `left`.
 fn fetch(uri: &str, path: Option<&Path>, wanted: u64, left: &mut u64) -> Result<Vec<u8>, ReadProblem> {
     if let Some(data) = uri.strip_prefix("data:") {
-        let (kind, data) =
-            data.split_once(',').ok_or_else(|| ReadProblem::syntax("a comma in a data URI", quoted(uri.as_bytes())))?;
-        return if kind.ends_with(";base64") {
-            BASE64.decode(data).map_err(|e| ReadProblem::syntax("base64 data", e.to_string()))
-        } else {
-            Ok(percent_decoded(data))
-        };
+        return decoded_data(data);
     }
     let base = path.ok_or_else(|| {
         let uri = quoted(uri.as_bytes());
@@ -117,24 +107,29 @@ fn fetch(uri: &str, path: Option<&Path>, wanted: u64, left: &mut u64) -> Result<
             "the buffer {uri} is not a file in the folder of the glTF file, and is not read"
         ))
     };
-    let file = file_beside(uri, base).ok_or_else(elsewhere)?;
+    let decoded = String::from_utf8(percent_decoded(uri)).map_err(|_| elsewhere())?;
+    let file = file_beside(&decoded, base).ok_or_else(elsewhere)?;
     let failed = |e: std::io::Error| {
         ReadProblem::Io(std::io::Error::new(e.kind(), format!("{}: {}", file.display(), plain(&e))))
     };
-    // Links are followed to where they lead, and must not lead out of the folder; devices and pipes may never end.
-    let folder = base.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let place = file.canonicalize().map_err(failed)?;
-    if !place.starts_with(folder.canonicalize().map_err(failed)?) || !fs::metadata(&place).map_err(failed)?.is_file() {
-        return Err(elsewhere());
-    }
-    let mut bytes = Vec::new();
+    // Links are followed to where they lead, and must not lead out of the folder.
     let cap = wanted.min(*left);
-    File::open(&place).and_then(|file| file.take(cap).read_to_end(&mut bytes)).map_err(failed)?;
+    let bytes = read_beside(&file, base, cap).map_err(failed)?.ok_or_else(elsewhere)?;
     if wanted > cap && bytes.len() as u64 == cap {
         return Err(ReadProblem::TooLarge { what: "bytes of the files beside the document", limit: MOST_BESIDE });
     }
     *left -= bytes.len() as u64;
     Ok(bytes)
+}
+
+/// What follows `data:` in a URI.
+pub(super) fn decoded_data(data: &str) -> Result<Vec<u8>, ReadProblem> {
+    let (kind, data) =
+        data.split_once(',').ok_or_else(|| ReadProblem::syntax("a comma in a data URI", quoted(data.as_bytes())))?;
+    match kind.ends_with(";base64") {
+        true => BASE64.decode(data).map_err(|e| ReadProblem::syntax("base64 data", e.to_string())),
+        false => Ok(percent_decoded(data)),
+    }
 }
 
 /// "No such file or directory" without "(os error 2)".
@@ -143,16 +138,7 @@ fn plain(error: &std::io::Error) -> String {
     text.split(" (os error").next().unwrap_or(&text).to_owned()
 }
 
-/// The file that `uri` names below the folder of `base`; `None` for an address elsewhere.
-fn file_beside(uri: &str, base: &Path) -> Option<PathBuf> {
-    let decoded = String::from_utf8(percent_decoded(uri)).ok()?;
-    let relative = Path::new(&decoded);
-    let plain = relative.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-    let has_scheme = decoded.split(['/', '?', '#']).next().is_some_and(|first| first.contains(':'));
-    (plain && !has_scheme && !decoded.is_empty()).then(|| base.parent().unwrap_or(Path::new("")).join(relative))
-}
-
-fn percent_decoded(text: &str) -> Vec<u8> {
+pub(super) fn percent_decoded(text: &str) -> Vec<u8> {
     let bytes = text.as_bytes();
     let mut out = Vec::with_capacity(bytes.len());
     let mut i = 0;
@@ -177,13 +163,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_elsewhere_are_not_found() {
+    fn addresses_of_files_are_decoded_before_they_are_judged() {
+        let decoded = |uri: &str| String::from_utf8(percent_decoded(uri)).unwrap();
         let base = Path::new("models/a.gltf");
-        assert_eq!(file_beside("my%20mesh.bin", base), Some("models/my mesh.bin".into()));
-        assert_eq!(file_beside("sub/./b.bin", base), Some("models/sub/./b.bin".into()));
-        for uri in ["/etc/passwd", "../b.bin", "%2e%2e/b.bin", "sub/../../b.bin", "http://x/b.bin", "file:b", "C:b", ""]
-        {
-            assert_eq!(file_beside(uri, base), None, "{uri}");
+        assert_eq!(file_beside(&decoded("my%20mesh.bin"), base), Some("models/my mesh.bin".into()));
+        for uri in ["%2e%2e/b.bin", "%2Fetc/passwd", "sub/%2e%2E/../b.bin", "a%00b"] {
+            assert_eq!(file_beside(&decoded(uri), base), None, "{uri}");
         }
+        assert_eq!(decoded_data("image/png;base64,AAEC").unwrap(), [0, 1, 2]);
+        assert_eq!(decoded_data(",a%20b").unwrap(), b"a b");
+        assert!(decoded_data("image/png;base64").is_err() && decoded_data(";base64,!").is_err());
     }
 }

@@ -1,7 +1,7 @@
 //! What a material makes of the colours of vertices.
 
 use gltf_json::Root;
-use gltf_json::material::AlphaMode;
+use gltf_json::material::{AlphaMode, Material};
 use gltf_json::mesh::Primitive;
 use gltf_json::validation::Checked;
 
@@ -15,23 +15,27 @@ pub(super) struct Tint {
     factor: [f32; 4],
     /// Whether alpha counts.
     transparent: bool,
-    /// The number of the material, if a texture would be multiplied too.
-    pub(super) textured: Option<usize>,
 }
 
 impl Tint {
     /// The tint of the material of `primitive`; opaque white if it has none.
     pub(super) fn of(root: &Root, primitive: &Primitive) -> Result<Self, ReadProblem> {
-        let Some(index) = primitive.material else {
-            return Ok(Self { factor: [1.0; 4], transparent: false, textured: None });
-        };
+        let Some(index) = primitive.material else { return Ok(Self::plain()) };
         let material = root.get(index).ok_or_else(|| missing(index.value(), root.materials.len(), "materials"))?;
-        let pbr = &material.pbr_metallic_roughness;
-        Ok(Self {
-            factor: pbr.base_color_factor.0,
+        Ok(Self::of_material(material))
+    }
+
+    /// The tint of a material.
+    pub(super) fn of_material(material: &Material) -> Self {
+        Self {
+            factor: material.pbr_metallic_roughness.base_color_factor.0,
             transparent: matches!(material.alpha_mode, Checked::Valid(AlphaMode::Blend | AlphaMode::Mask)),
-            textured: pbr.base_color_texture.as_ref().map(|_| index.value()),
-        })
+        }
+    }
+
+    /// Opaque white.
+    pub(super) fn plain() -> Self {
+        Self { factor: [1.0; 4], transparent: false }
     }
 
     /// Whether it leaves colours as they are, and says nothing where there are none.
@@ -57,7 +61,7 @@ mod tests {
 
     #[test]
     fn factors_are_multiplied_in_linear_light() {
-        let tint = Tint { factor: [0.5, 1.0, 0.0, 0.5], transparent: true, textured: None };
+        let tint = Tint { factor: [0.5, 1.0, 0.0, 0.5], transparent: true };
         let mut odd = 0;
         assert_eq!(tint.applied_to([1.0, 0.5, 1.0, 1.0], &mut odd), [188, 188, 0, 128]);
         assert_eq!(odd, 0);

@@ -3,9 +3,11 @@
 
 mod accessor;
 mod buffers;
+mod content;
 mod instancing;
 mod material;
 mod scene;
+mod texture;
 mod write;
 
 use std::path::Path;
@@ -86,7 +88,7 @@ fn read_document(
     let instancing = Instancing::read(&root, json).map_err(|e| not_gltf(&e))?;
     let buffers = Buffers::load(&root, binary, path)?;
     let mut allowance = Expansion::for_input(length.max(buffers.bytes()) as u64);
-    let mut soup = scene::read(&root, &instancing, &buffers, &mut allowance)?;
+    let mut soup = scene::read(&root, &instancing, &buffers, &mut allowance, path)?;
     soup.warnings.extend(looks);
     soup.finish(format, Some(unit(&root)))
 }

@@ -1,7 +1,8 @@
 //! The node tree: transforms are applied, every node with a mesh becomes a part.
 
+use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use glam::{DMat4, DQuat, DVec3};
 use gltf_json::mesh::{Mesh, Mode, Primitive, Semantic};
@@ -15,6 +16,7 @@ use super::accessor;
 use super::buffers::{Buffers, missing};
 use super::instancing::Instancing;
 use super::material::Tint;
+use super::texture::Looks;
 
 /// The soup of the default scene, or of the first, or of every node, or of every mesh: whichever
 /// is there.
@@ -23,6 +25,7 @@ pub(super) fn read(
     instancing: &Instancing,
     buffers: &Buffers<'_>,
     allowance: &mut Expansion,
+    path: Option<&Path>,
 ) -> Result<Soup, ReadError> {
     let mut reader = Reader {
         root,
@@ -33,7 +36,7 @@ pub(super) fn read(
         used: vec![false; root.meshes.len()],
         other_primitives: 0,
         points: 0,
-        textured: BTreeSet::new(),
+        looks: Looks::new(root, buffers, path),
         posed: 0,
     };
     match tops(root)? {
@@ -79,8 +82,7 @@ struct Reader<'a, 'b> {
     other_primitives: usize,
     /// Primitives of points.
     points: usize,
-    /// Materials with a texture.
-    textured: BTreeSet<usize>,
+    looks: Looks<'a>,
     posed: usize,
 }
 
@@ -205,8 +207,13 @@ impl Reader<'_, '_> {
 
     /// Colours the triangles from number `start` on, whose vertices are counted from `first`.
     fn paint(&mut self, primitive: &Primitive, start: usize, first: u32, shared: &mut Shared) -> Result<(), ReadError> {
-        let tint = Tint::of(self.root, primitive)?;
-        self.textured.extend(tint.textured);
+        let mut tint = Tint::of(self.root, primitive)?;
+        if self.looks.keeps_colours {
+            tint = Tint::plain();
+        }
+        if self.looks.is_textured {
+            self.looks.hang(primitive, (start, first), &mut self.soup, self.allowance);
+        }
         let (soup, odd) = (&mut self.soup, &mut 0);
         let triangles = &soup.triangles[start..];
         let Some(&index) = primitive.attributes.get(&Checked::Valid(Semantic::Colors(0))) else {
@@ -258,9 +265,9 @@ impl Reader<'_, '_> {
             }
         };
         warn(self.other_primitives + points, "primitive", "without triangles left out");
-        warn(self.textured.len(), "texture", "left out; colours of vertices and materials are read");
         warn(self.posed, "mesh", "with a skin or morph targets read in the pose they are stored in");
         warn(self.used.iter().filter(|used| !**used).count(), "mesh", "not part of the scene left out");
+        self.looks.finish(&mut self.soup);
         self.soup
     }
 }

@@ -1,6 +1,6 @@
-//! Writing: one mesh, one node, positions as floats, colours as 16-bit integers, indices as 32-bit integers, in one buffer.
+//! Writing: one mesh, one node, positions as floats, colours as 16-bit integers, texture coordinates as floats, indices as 32-bit
+//! integers, and images, in one buffer.
 
-use std::borrow::Cow;
 use std::io::Write;
 
 use base64::engine::general_purpose::STANDARD;
@@ -8,140 +8,166 @@ use base64::write::EncoderWriter;
 use gltf_json::buffer::{ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER};
 use serde_json::{Value, json};
 
-use super::super::colour::{Colours, Rgba, by_vertex, linear_from_srgb};
+use super::super::colour::{Rgba, linear_from_srgb};
 use super::super::error::{WriteError, WriteProblem};
+use super::content::{Content, Piece};
 use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC};
-use crate::io::{Format, Unit};
+use crate::io::{Format, Material, Paint, Unit};
 use crate::mesh::{Bounds, TriMesh};
 
 const FLOAT: u32 = gltf_json::accessor::FLOAT;
 const UNSIGNED_INT: u32 = gltf_json::accessor::UNSIGNED_INT;
 const UNSIGNED_SHORT: u32 = gltf_json::accessor::UNSIGNED_SHORT;
 
-/// What goes into the file.
-struct Content<'a> {
-    mesh: Cow<'a, TriMesh>,
-    /// One for each vertex.
-    colours: Option<Cow<'a, [Rgba]>>,
-    unit: Option<Unit>,
+/// The lists of a document that point to one another.
+struct Lists {
+    accessors: Vec<Value>,
+    views: Vec<Value>,
+    /// Bytes of the views so far.
+    bytes: usize,
 }
 
-impl<'a> Content<'a> {
-    /// `mesh` with a colour for each vertex, its vertices repeated where colours meet.
-    fn new(
-        mesh: &'a TriMesh,
-        colours: Option<&'a Colours>,
-        unit: Option<Unit>,
-        format: Format,
-    ) -> Result<Self, WriteProblem> {
-        let Some(colours) = colours else {
-            return Ok(Self { mesh: Cow::Borrowed(mesh), colours: None, unit });
-        };
-        let (mesh, colours) = by_vertex(mesh, colours).ok_or(WriteProblem::TooLarge { format })?;
-        Ok(Self { mesh, colours: Some(colours), unit })
+impl Lists {
+    /// Adds a view of the next bytes and returns its number.
+    fn view(&mut self, bytes: usize, target: Option<u32>) -> usize {
+        let mut view = json!({ "buffer": 0, "byteOffset": self.bytes, "byteLength": bytes });
+        if let Some(target) = target {
+            view["target"] = json!(target);
+        }
+        self.bytes += bytes.next_multiple_of(4);
+        self.views.push(view);
+        self.views.len() - 1
     }
 
-    /// Bytes of the positions, of the indices, of the colours.
-    fn sizes(&self) -> [usize; 3] {
-        let colours = self.colours.as_ref().map_or(0, |colours| 8 * colours.len());
-        [12 * self.mesh.positions.len(), 12 * self.mesh.triangles.len(), colours]
+    fn accessor(&mut self, accessor: Value) -> usize {
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
     }
+}
 
-    fn document(&self, uri: Option<String>) -> Value {
-        let [positions, indices, colours] = self.sizes();
-        let single = self.mesh.positions.iter().map(|p| p.as_vec3().as_dvec3());
-        let (min, max) = Bounds::of(single).map_or_else(Default::default, |b| (b.min.to_array(), b.max.to_array()));
-        let asset = json!({ "version": "2.0", "generator": "meshwright" });
-        // The numbers stay as they are, to the last bit; the node brings them to metres.
-        let mut node = json!({ "mesh": 0 });
-        if let Some(unit) = self.unit.filter(|unit| *unit != Unit::Metre) {
-            node["scale"] = json!(vec![unit.metres(); 3]);
-        }
-        let mut buffer = json!({ "byteLength": positions + indices + colours });
-        if let Some(uri) = uri {
-            buffer["uri"] = Value::String(uri);
-        }
-        let count = self.mesh.positions.len();
-        let mut document = json!({
-            "asset": asset,
-            "scene": 0,
-            "scenes": [{ "nodes": [0] }],
-            "nodes": [node],
-            "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
-            "accessors": [
-                { "bufferView": 0, "componentType": FLOAT, "count": count, "type": "VEC3", "min": min, "max": max },
-                { "bufferView": 1, "componentType": UNSIGNED_INT, "count": 3 * self.mesh.triangles.len(),
-                  "type": "SCALAR" },
-            ],
-            "bufferViews": [
-                { "buffer": 0, "byteOffset": 0, "byteLength": positions, "target": ARRAY_BUFFER },
-                { "buffer": 0, "byteOffset": positions, "byteLength": indices, "target": ELEMENT_ARRAY_BUFFER },
-            ],
-            "buffers": [buffer],
-        });
-        if let Some(colours) = &self.colours {
-            add_colours(&mut document, colours, positions + indices);
-        }
-        document
+fn document(content: &Content<'_>, unit: Option<Unit>, uri: Option<String>) -> Value {
+    let mesh = &content.mesh;
+    let single = mesh.positions.iter().map(|p| p.as_vec3().as_dvec3());
+    let (min, max) = Bounds::of(single).map_or_else(Default::default, |b| (b.min.to_array(), b.max.to_array()));
+    let asset = json!({ "version": "2.0", "generator": "meshwright" });
+    // The numbers stay as they are, to the last bit; the node brings them to metres.
+    let mut node = json!({ "mesh": 0 });
+    if let Some(unit) = unit.filter(|unit| *unit != Unit::Metre) {
+        node["scale"] = json!(vec![unit.metres(); 3]);
     }
-
-    fn write_buffer(&self, out: &mut dyn Write) -> std::io::Result<()> {
-        let mut chunk = Vec::with_capacity(1 << 16);
-        for points in self.mesh.positions.chunks(4096) {
-            chunk.clear();
-            points.iter().flat_map(|p| p.as_vec3().to_array()).for_each(|x| chunk.extend_from_slice(&x.to_le_bytes()));
-            out.write_all(&chunk)?;
-        }
-        for triangles in self.mesh.triangles.chunks(4096) {
-            chunk.clear();
-            triangles.iter().flatten().for_each(|v| chunk.extend_from_slice(&v.to_le_bytes()));
-            out.write_all(&chunk)?;
-        }
-        // In 16 bits of linear light every one of the 256 levels has its own number; in 8 bits the dark ones would not.
-        let stored: Vec<u16> = (0..=255).map(|level| (linear_from_srgb(level) * 65535.0).round() as u16).collect();
-        for colours in self.colours.iter().flat_map(|colours| colours.chunks(4096)) {
-            chunk.clear();
-            for &[red, green, blue, alpha] in colours {
-                let light = [red, green, blue].map(|level| stored[usize::from(level)]);
-                light.iter().chain([&(u16::from(alpha) * 257)]).for_each(|x| chunk.extend_from_slice(&x.to_le_bytes()));
+    let count = mesh.positions.len();
+    let mut lists = Lists { accessors: Vec::new(), views: Vec::new(), bytes: 0 };
+    let view = lists.view(12 * count, Some(ARRAY_BUFFER));
+    let positions = lists.accessor(json!({
+        "bufferView": view, "componentType": FLOAT, "count": count, "type": "VEC3", "min": min, "max": max
+    }));
+    let view = lists.view(12 * mesh.triangles.len(), Some(ELEMENT_ARRAY_BUFFER));
+    let indices: Vec<usize> = content.pieces.iter().map(|piece| lists.accessor(index_accessor(view, piece))).collect();
+    let colours = content.colours.as_ref().map(|colours| {
+        let view = lists.view(8 * colours.len(), Some(ARRAY_BUFFER));
+        lists.accessor(json!({
+            "bufferView": view, "componentType": UNSIGNED_SHORT, "normalized": true, "count": count, "type": "VEC4"
+        }))
+    });
+    let coordinates = content.coordinates.as_ref().map(|coordinates| {
+        let view = lists.view(8 * coordinates.len(), Some(ARRAY_BUFFER));
+        lists.accessor(json!({ "bufferView": view, "componentType": FLOAT, "count": count, "type": "VEC2" }))
+    });
+    let images: Vec<Value> = (content.images.iter())
+        .map(|image| {
+            let view = lists.view(image.bytes.len(), None);
+            json!({ "bufferView": view, "mimeType": image.media_type(), "name": image.name })
+        })
+        .collect();
+    let primitives: Vec<Value> = (content.pieces.iter().zip(indices))
+        .map(|(piece, indices)| {
+            let mut primitive = json!({ "attributes": { "POSITION": positions }, "indices": indices });
+            if let Some(colours) = colours {
+                primitive["attributes"]["COLOR_0"] = json!(colours);
             }
-            out.write_all(&chunk)?;
-        }
-        Ok(())
+            if let Some(coordinates) = coordinates.filter(|_| piece.textured) {
+                primitive["attributes"]["TEXCOORD_0"] = json!(coordinates);
+            }
+            if let Some(material) = content.material_of(piece) {
+                primitive["material"] = json!(material);
+            }
+            primitive
+        })
+        .collect();
+    let mut buffer = json!({ "byteLength": lists.bytes });
+    if let Some(uri) = uri {
+        buffer["uri"] = Value::String(uri);
     }
+    let mut document = json!({
+        "asset": asset,
+        "scene": 0,
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [node],
+        "meshes": [{ "primitives": primitives }],
+        "accessors": lists.accessors,
+        "bufferViews": lists.views,
+        "buffers": [buffer],
+    });
+    let materials = materials(content);
+    if !materials.is_empty() {
+        document["materials"] = Value::Array(materials);
+    }
+    if !images.is_empty() {
+        let textures: Vec<Value> = (0..images.len()).map(|source| json!({ "source": source })).collect();
+        (document["textures"], document["images"]) = (Value::Array(textures), Value::Array(images));
+    }
+    document
 }
 
-/// Adds the colours, which lie at byte `offset`, and a material without gloss that lets alpha count if any is below 255.
-fn add_colours(document: &mut Value, colours: &[Rgba], offset: usize) {
-    let push =
-        |list: &mut Value, entry: Value| list.as_array_mut().into_iter().for_each(|list| list.push(entry.clone()));
-    push(
-        &mut document["accessors"],
-        json!({ "bufferView": 2, "componentType": UNSIGNED_SHORT, "normalized": true, "count": colours.len(),
-                "type": "VEC4" }),
-    );
-    push(
-        &mut document["bufferViews"],
-        json!({ "buffer": 0, "byteOffset": offset, "byteLength": 8 * colours.len(), "target": ARRAY_BUFFER }),
-    );
-    let mode = if colours.iter().all(|c| c[3] == 255) { "OPAQUE" } else { "BLEND" };
-    document["materials"] = json!([{ "pbrMetallicRoughness": { "metallicFactor": 0 }, "alphaMode": mode }]);
-    let primitive = &mut document["meshes"][0]["primitives"][0];
-    primitive["attributes"]["COLOR_0"] = json!(2);
-    primitive["material"] = json!(0);
+fn index_accessor(view: usize, piece: &Piece) -> Value {
+    let mut accessor =
+        json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": 3 * piece.count, "type": "SCALAR" });
+    if piece.first > 0 {
+        accessor["byteOffset"] = json!(12 * piece.first);
+    }
+    accessor
+}
+
+/// The materials, all without gloss; the last one is for colours alone. Alpha counts where there is one below 255.
+fn materials(content: &Content<'_>) -> Vec<Value> {
+    let see_through = |colours: &[Rgba]| colours.iter().any(|c| c[3] < 255);
+    let blends = content.colours.as_deref().is_some_and(see_through);
+    let mode = |blends: bool| if blends { "BLEND" } else { "OPAQUE" };
+    let own = content.texture.iter().flat_map(|texture| &texture.materials).map(|material: &Material| {
+        let mut pbr = json!({ "metallicFactor": 0 });
+        let colour = material.colour.filter(|_| content.has_factors());
+        if let Some([red, green, blue, alpha]) = colour {
+            let [red, green, blue] = [red, green, blue].map(linear_from_srgb);
+            pbr["baseColorFactor"] = json!([red, green, blue, f64::from(alpha) / 255.0]);
+        }
+        if let Some(image) = content.image_number(material) {
+            pbr["baseColorTexture"] = json!({ "index": image });
+        }
+        let blends = blends || colour.is_some_and(|colour| colour[3] < 255);
+        let mut written = json!({ "pbrMetallicRoughness": pbr, "alphaMode": mode(blends) });
+        if !material.name.is_empty() {
+            written["name"] = json!(material.name);
+        }
+        written
+    });
+    let plain = content
+        .colours
+        .as_ref()
+        .map(|_| json!({ "pbrMetallicRoughness": { "metallicFactor": 0 }, "alphaMode": mode(blends) }));
+    own.chain(plain).collect()
 }
 
 /// Writes a GLB file.
 pub(in crate::io) fn write_glb(
     mesh: &TriMesh,
-    colours: Option<&Colours>,
+    paint: &Paint<'_>,
     unit: Option<Unit>,
     out: &mut dyn Write,
 ) -> Result<(), WriteError> {
-    let content = Content::new(mesh, colours, unit, Format::Glb)?;
-    let mut json = content.document(None).to_string().into_bytes();
+    let content = Content::new(mesh, paint, Format::Glb)?;
+    let mut json = document(&content, unit, None).to_string().into_bytes();
     json.resize(json.len().next_multiple_of(4), b' ');
-    let binary: usize = content.sizes().iter().sum();
+    let binary = content.bytes();
     let too_large = |_| WriteProblem::TooLarge { format: Format::Glb };
     let total = u32::try_from(12 + 8 + json.len() + 8 + binary).map_err(too_large)?;
     out.write_all(MAGIC)?;
@@ -160,17 +186,17 @@ pub(in crate::io) fn write_glb(
 /// Writes a glTF file in JSON, with the buffer as a data URI.
 pub(in crate::io) fn write_json(
     mesh: &TriMesh,
-    colours: Option<&Colours>,
+    paint: &Paint<'_>,
     unit: Option<Unit>,
     out: &mut dyn Write,
 ) -> Result<(), WriteError> {
-    let content = Content::new(mesh, colours, unit, Format::Gltf)?;
+    let content = Content::new(mesh, paint, Format::Gltf)?;
     let mut uri = b"data:application/octet-stream;base64,".to_vec();
     let mut encoder = EncoderWriter::new(&mut uri, &STANDARD);
     content.write_buffer(&mut encoder)?;
     encoder.finish()?;
     drop(encoder);
     let uri = String::from_utf8_lossy(&uri).into_owned();
-    serde_json::to_writer(&mut *out, &content.document(Some(uri))).map_err(std::io::Error::from)?;
+    serde_json::to_writer(&mut *out, &document(&content, unit, Some(uri))).map_err(std::io::Error::from)?;
     Ok(out.write_all(b"\n")?)
 }

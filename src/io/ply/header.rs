@@ -2,6 +2,7 @@
 
 use super::super::error::{ReadError, ReadProblem};
 use super::super::text::{Words, integer, quoted, quoted_or_end};
+use super::legend::LegendEntry;
 
 /// How the data after the header is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,6 +74,10 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub(super) encoding: Encoding,
     pub(super) elements: Vec<Element>,
+    /// What comments say of the colours.
+    pub(super) legend: Vec<LegendEntry>,
+    /// Names of image files in comments.
+    pub(super) images: Vec<Vec<u8>>,
     /// Lines of the header.
     pub(super) lines: usize,
     /// Bytes of the header.
@@ -90,6 +95,7 @@ impl Header {
         let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
+        let (mut legend, mut images) = (Vec::new(), Vec::new());
         let mut used = 0;
         for (i, raw) in bytes.split_inclusive(|&b| b == end).enumerate() {
             used += raw.len();
@@ -111,9 +117,13 @@ impl Header {
                 }
                 Some(b"end_header") => {
                     let encoding = encoding.ok_or_else(|| fail("a `format` line in the header", "none".into()))?;
-                    return Ok(Self { encoding, elements, lines: at, bytes: used });
+                    return Ok(Self { encoding, elements, legend, images, lines: at, bytes: used });
                 }
-                None | Some(b"comment" | b"obj_info") => {}
+                Some(b"comment") => match words.rest().strip_prefix(b"TextureFile ") {
+                    Some(name) => images.push(name.trim_ascii().to_vec()),
+                    None => LegendEntry::gather(words.rest(), &mut legend),
+                },
+                None | Some(b"obj_info") => {}
                 Some(word) => return Err(fail("a line of the header", quoted(word))),
             }
         }

@@ -1,24 +1,33 @@
 //! PLY: a header that declares elements and their properties, then the data, as text or binary.
 
 mod colour;
+mod face_map;
 mod header;
+mod legend;
 mod rows;
+mod texture;
 mod vertex_map;
 mod write;
+
+use std::path::Path;
 
 use glam::DVec3;
 
 use self::colour::Channels;
 use self::header::{Element, Header};
 use self::rows::Rows;
+use self::texture::{OfFaces, OfVertices};
 use super::error::{ReadError, ReadProblem};
 use super::soup::{Soup, too_many_vertices};
 use super::{Format, Loaded};
 
+pub use face_map::{FaceMap, encode_face_map};
+pub use legend::LegendEntry;
 pub use vertex_map::{VertexMap, encode_vertex_map};
 pub(super) use write::{write_ascii, write_binary};
 
-pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
+/// Reads the file at `path`, beside which its images lie.
+pub(super) fn read(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, ReadError> {
     let header = Header::read(bytes)?;
     let vertices = header.element("vertex").ok_or_else(|| {
         ReadError::line(header.lines, ReadProblem::syntax("an element `vertex` in the header", "none"))
@@ -26,9 +35,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
     let mut rows = Rows::new(bytes, &header);
     let mut soup = Soup::new();
     let mut waiting = Vec::new();
+    let mut of_vertices = OfVertices::default();
     for (i, element) in header.elements.iter().enumerate() {
         if i == vertices {
-            read_vertices(element, &mut rows, &mut soup)?;
+            read_vertices(element, &mut rows, &mut soup, &mut of_vertices)?;
         } else if let Some(faces) = Faces::of(element) {
             // Faces may stand before the vertices they refer to: they are gone back to.
             if i < vertices {
@@ -44,10 +54,18 @@ pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
     for (element, faces, mut rows) in waiting {
         faces.read(element, &mut rows, &mut soup)?;
     }
-    soup.finish(Format::Ply, None)
+    of_vertices.spread(&mut soup);
+    texture::hang(&header.images, path, &mut soup);
+    let loaded = soup.finish(Format::Ply, None)?;
+    Ok(Loaded { legend: header.legend, ..loaded })
 }
 
-fn read_vertices(element: &Element, rows: &mut Rows<'_>, soup: &mut Soup) -> Result<(), ReadError> {
+fn read_vertices(
+    element: &Element,
+    rows: &mut Rows<'_>,
+    soup: &mut Soup,
+    of_vertices: &mut OfVertices,
+) -> Result<(), ReadError> {
     let axis = |name: &str| {
         let found = element.properties.iter().position(|p| p.name == name && p.list.is_none());
         let fail = || ReadProblem::syntax(format!("a property `{name}` of `vertex`"), "none");
@@ -60,12 +78,14 @@ fn read_vertices(element: &Element, rows: &mut Rows<'_>, soup: &mut Soup) -> Res
     }
     soup.positions.reserve_exact(element.count);
     let channels = Channels::of(element, &mut soup.colours.vertices, &mut soup.warnings);
+    of_vertices.begin(element);
     for vertex in 0..element.count {
         rows.next(element)?;
         soup.positions.push(DVec3::from(axes.map(|axis| rows.scalar(axis))));
         if let Some(channels) = &channels {
             soup.colours.vertices.put(vertex..vertex + 1, channels.levels(rows));
         }
+        of_vertices.take(rows);
     }
     Ok(())
 }
@@ -99,6 +119,7 @@ impl Faces {
             soup.triangles.reserve(element.count);
         }
         let channels = Channels::of(element, &mut soup.colours.faces, &mut soup.warnings);
+        let mut textures = OfFaces::of(element);
         let mut corners = Vec::new();
         for _ in 0..element.count {
             rows.next(element)?;
@@ -106,7 +127,7 @@ impl Faces {
             let (Self::Polygons(list) | Self::Strips(list)) = self;
             let values = rows.list(list);
             match self {
-                Self::Polygons(_) => indices(values, count, &mut corners).map(|()| soup.face(&corners)),
+                Self::Polygons(_) => indices(values, count, &mut corners).map(|()| textures.face(&corners, rows, soup)),
                 Self::Strips(_) => values
                     .split(|&v| v == -1.0)
                     .try_for_each(|strip| indices(strip, count, &mut corners).map(|()| soup.strip(&corners))),

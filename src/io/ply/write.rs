@@ -5,15 +5,79 @@ use std::io::Write;
 use super::super::colour::{Colours, Tails};
 use super::super::error::WriteError;
 use super::super::text::TextOut;
+use super::super::{Paint, TextureMap, shown_colours};
 use crate::mesh::TriMesh;
 
-fn header(mesh: &TriMesh, format: &str, single: bool, tails: &Tails<'_>) -> String {
-    let more = More {
-        comments: String::new(),
-        of_vertex: channel_lines(tails.vertex_channels()),
-        of_face: channel_lines(tails.face_channels()),
-    };
-    header_with(mesh, format, single, &more)
+/// What the rows of a mesh with colours and textures hold.
+struct Rest<'a> {
+    tails: Tails<'a>,
+    texture: Option<&'a TextureMap>,
+    /// Names of the image files; none on a stream.
+    images: Vec<String>,
+    /// Whether faces say which image they have.
+    numbered: bool,
+}
+
+impl<'a> Rest<'a> {
+    fn of(colours: Option<&'a Colours>, paint: &Paint<'a>) -> Self {
+        let texture = paint.texture.filter(|texture| texture.has_coordinates());
+        let named = texture.zip(paint.beside).map(|(texture, path)| texture.image_names(path));
+        let images = named.unwrap_or_default();
+        let has_image = |t: usize, texture: &TextureMap| texture.image(t).is_some();
+        let every = |texture: &TextureMap| {
+            (0..texture.coordinates.len()).all(|t| has_image(t, texture) == texture.coordinates[t].is_some())
+        };
+        let numbered = images.len() > 1 || !images.is_empty() && !texture.is_some_and(every);
+        Self { tails: Tails::of(colours), texture, images, numbered }
+    }
+
+    fn header(&self, mesh: &TriMesh, format: &str, single: bool) -> String {
+        let more = More {
+            comments: self.images.iter().map(|name| format!("comment TextureFile {name}\n")).collect(),
+            of_vertex: channel_lines(self.tails.vertex_channels()),
+            of_face: channel_lines(self.tails.face_channels())
+                + self.texture.map_or("", |_| "property list uchar float texcoord\n")
+                + if self.numbered { "property int texnumber\n" } else { "" },
+        };
+        header_with(mesh, format, single, &more)
+    }
+
+    /// The coordinates of a face's corners; none for a face without.
+    fn coordinates(&self, face: usize) -> Option<[[f32; 2]; 3]> {
+        self.texture?.at(face, false)
+    }
+
+    /// The image of a face, −1 for none.
+    fn image(&self, face: usize) -> i32 {
+        let number = self.texture.and_then(|texture| texture.image(face));
+        number.and_then(|number| i32::try_from(number).ok()).unwrap_or(-1)
+    }
+
+    fn face_bytes(&self, face: usize, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(self.tails.face(face));
+        if self.texture.is_some() {
+            let coordinates = self.coordinates(face);
+            bytes.push(if coordinates.is_some() { 6 } else { 0 });
+            coordinates.iter().flatten().flatten().for_each(|x| bytes.extend_from_slice(&x.to_le_bytes()));
+        }
+        if self.numbered {
+            bytes.extend_from_slice(&self.image(face).to_le_bytes());
+        }
+    }
+
+    fn face_text(&self, face: usize, text: &mut TextOut<'_>) {
+        if self.texture.is_some() {
+            let coordinates = self.coordinates(face);
+            text.text(if coordinates.is_some() { " 6" } else { " 0" });
+            for x in coordinates.iter().flatten().flatten() {
+                text.text(" ");
+                text.short_number(*x);
+            }
+        }
+        if self.numbered {
+            text.text(&format!(" {}", self.image(face)));
+        }
+    }
 }
 
 /// Lines of a header beyond those of positions and triangles, each ended by `\n`.
@@ -56,16 +120,13 @@ pub(super) fn is_single(mesh: &TriMesh) -> bool {
 }
 
 /// Writes binary little-endian PLY.
-pub(in crate::io) fn write_binary(
-    mesh: &TriMesh,
-    colours: Option<&Colours>,
-    out: &mut dyn Write,
-) -> Result<(), WriteError> {
-    let (single, tails) = (is_single(mesh), Tails::of(colours));
-    out.write_all(header(mesh, "binary_little_endian", single, &tails).as_bytes())?;
+pub(in crate::io) fn write_binary(mesh: &TriMesh, paint: &Paint<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+    let colours = shown_colours(paint.colours, paint.texture);
+    let (single, rest) = (is_single(mesh), Rest::of(colours.as_deref(), paint));
+    out.write_all(rest.header(mesh, "binary_little_endian", single).as_bytes())?;
     let extra = |row: Row, bytes: &mut Vec<u8>| match row {
-        Row::Vertex(vertex) => bytes.extend_from_slice(tails.vertex(vertex)),
-        Row::Face(face) => bytes.extend_from_slice(tails.face(face)),
+        Row::Vertex(vertex) => bytes.extend_from_slice(rest.tails.vertex(vertex)),
+        Row::Face(face) => rest.face_bytes(face, bytes),
     };
     write_binary_rows(mesh, single, extra, out)
 }
@@ -108,14 +169,11 @@ pub(super) fn write_binary_rows(
 
 /// Writes ASCII PLY. The numbers are those of the mesh in full, so a reader that takes them as
 /// `double` loses nothing either.
-pub(in crate::io) fn write_ascii(
-    mesh: &TriMesh,
-    colours: Option<&Colours>,
-    out: &mut dyn Write,
-) -> Result<(), WriteError> {
+pub(in crate::io) fn write_ascii(mesh: &TriMesh, paint: &Paint<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+    let colours = shown_colours(paint.colours, paint.texture);
     let mut text = TextOut::new(out);
-    let tails = Tails::of(colours);
-    text.text(&header(mesh, "ascii", is_single(mesh), &tails));
-    text.rows(mesh, &tails)?;
+    let rest = Rest::of(colours.as_deref(), paint);
+    text.text(&rest.header(mesh, "ascii", is_single(mesh)));
+    text.rows(mesh, &rest.tails, |face, text| rest.face_text(face, text))?;
     Ok(text.finish()?)
 }

@@ -10,6 +10,7 @@ use super::super::soup::{Expansion, Soup, counted, too_many_vertices};
 use super::super::text::quoted;
 use super::model::{Object, Placed};
 use super::roles::{Role, Roles};
+use super::texture::Textures;
 use super::{Inherited, Models};
 use crate::mesh::Bounds;
 
@@ -46,6 +47,7 @@ pub(super) struct Builder<'a> {
     boxes: Vec<[Option<Bounds>; 2]>,
     allowance: Option<Expansion>,
     placed: BTreeSet<(usize, u32)>,
+    textures: Textures,
     /// Triangles whose material has no colour that is read here.
     colourless: usize,
     /// Names of pieces that were left out, by what they are.
@@ -65,6 +67,7 @@ impl<'a> Builder<'a> {
             boxes: Vec::new(),
             allowance: None,
             placed: BTreeSet::new(),
+            textures: Textures::default(),
             colourless: 0,
             helpers: BTreeMap::new(),
         }
@@ -199,6 +202,7 @@ impl<'a> Builder<'a> {
             let own = |t: usize| object.properties.get(t).copied().flatten();
             let property = |t: usize| own(t).map(|property| Inherited { model: open.model, property }).or(open.default);
             self.colourless += paint(soup, &self.models, &numbers, property, &open.transform);
+            self.textures.hang(soup, &self.models, &numbers, property, is_mirroring(&open.transform));
         }
         Ok(())
     }
@@ -215,6 +219,7 @@ impl<'a> Builder<'a> {
             .filter(|(key, object)| !object.triangles.is_empty() && !self.placed.contains(key))
             .count();
         let mut sentences = std::mem::take(&mut self.roles.warnings);
+        self.textures.finish(&mut self.models, &mut self.soup);
         for (what, names) in &self.helpers {
             sentences.push(format!("{}{} left out", counted(names.len(), what), listed(names)));
         }
@@ -315,7 +320,8 @@ fn paint(
         .map(|&triangle| {
             let colours = property(triangle).map(|property| models.colours(property));
             coloured += usize::from(colours.flatten().is_some());
-            colourless += usize::from(colours == Some(None));
+            let is_place = || property(triangle).is_some_and(|property| models.places(property).is_some());
+            colourless += usize::from(colours == Some(None) && !is_place());
             let [a, b, c] = colours.flatten().unwrap_or([WHITE; 3]);
             if mirrored { [a, c, b] } else { [a, b, c] }
         })

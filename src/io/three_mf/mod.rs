@@ -5,7 +5,9 @@ mod builder;
 mod extensions;
 mod model;
 mod package;
+mod pictures;
 mod roles;
+mod texture;
 mod write;
 
 use std::collections::BTreeMap;
@@ -16,7 +18,7 @@ use self::package::Package;
 use self::roles::Roles;
 use super::colour::Rgba;
 use super::error::ReadError;
-use super::{Format, Loaded};
+use super::{Format, Loaded, TexCoords};
 
 pub(super) use write::write;
 
@@ -72,6 +74,16 @@ impl Models<'_> {
         let colour = |entry: u32| entries.get(entry as usize).copied();
         let [a, b, c] = property.entries.map(colour);
         Some([a?, b?, c?])
+    }
+
+    /// The image of a property (the model that names it, and its number there) and the places on it, if it is a place on an image.
+    fn places(&self, property: Inherited) -> Option<((usize, u32), TexCoords)> {
+        let Inherited { model, property } = property;
+        let (image, entries) = self.loaded[model].places.get(&property.group)?;
+        self.loaded[model].textures.get(image)?;
+        let place = |entry: u32| entries.get(entry as usize).copied();
+        let [a, b, c] = property.entries.map(place);
+        Some(((model, *image), [a?, b?, c?]))
     }
 }
 

@@ -8,7 +8,7 @@ use quick_xml::events::{BytesStart, Event};
 
 use super::super::colour::Rgba;
 use super::super::error::ReadProblem;
-use super::super::text::{Words, integer, number, quoted};
+use super::super::text::{Words, integer, number, quoted, single};
 use super::extensions::Extensions;
 use super::package::{Xml, XmlError};
 use super::roles::Role;
@@ -22,6 +22,10 @@ pub(super) struct Model {
     pub(super) objects: BTreeMap<u32, Object>,
     /// Groups of colours and of base materials: the colours of their entries.
     pub(super) groups: BTreeMap<u32, Vec<Rgba>>,
+    /// The files of images.
+    pub(super) textures: BTreeMap<u32, String>,
+    /// Groups of places on an image: the image, and the places of their entries.
+    pub(super) places: BTreeMap<u32, (u32, Vec<[f32; 2]>)>,
     /// What the build places.
     pub(super) items: Vec<Placed>,
     pub(super) extensions: Extensions,
@@ -87,11 +91,14 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
         unit: Unit::Millimetre,
         objects: BTreeMap::new(),
         groups: BTreeMap::new(),
+        textures: BTreeMap::new(),
+        places: BTreeMap::new(),
         items: Vec::new(),
         extensions: Extensions::default(),
     };
     let mut object: Option<(u32, Object)> = None;
     let mut group: Option<(u32, Vec<Rgba>)> = None;
+    let mut places: Option<(u32, (u32, Vec<[f32; 2]>))> = None;
     let mut in_mesh = false;
     let mut whole = false;
     let mut setting = None;
@@ -108,6 +115,18 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
                         (b"model", _) => model.unit = unit(&e)?,
                         (b"object", object) => *object = Some((id(&e, b"id")?, new_object(&e)?)),
                         (b"basematerials" | b"colorgroup", _) => group = Some((id(&e, b"id")?, Vec::new())),
+                        (b"texture2d", _) => {
+                            model.textures.insert(id(&e, b"id")?, text(&needed(&e, b"path")?));
+                        }
+                        (b"texture2dgroup", _) => places = Some((id(&e, b"id")?, (id(&e, b"texid")?, Vec::new()))),
+                        (b"tex2coord", _) => {
+                            if let Some((_, (_, places))) = &mut places {
+                                places.push([
+                                    single(needed(&e, b"u")?.trim_ascii()),
+                                    single(needed(&e, b"v")?.trim_ascii()),
+                                ]);
+                            }
+                        }
                         (b"mesh", Some(_)) => in_mesh = true,
                         (b"metadata", Some(_)) => setting = attribute(&e, b"name").and_then(|n| Role::of_cura(&n)),
                         (b"component", Some((_, object))) => object.components.push(placed(&e)?),
@@ -134,6 +153,7 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
                         model.objects.insert(id, object);
                     }
                 }
+                b"texture2dgroup" => model.places.extend(places.take()),
                 b"basematerials" | b"colorgroup" => model.groups.extend(group.take()),
                 b"model" => whole = true,
                 _ => {}

@@ -87,6 +87,15 @@ impl<'a> Package<'a> {
         self.unpack(index, name, parse)
     }
 
+    /// The bytes of the file `name`, or why there are none. They count as unpacked.
+    pub(super) fn read_bytes(&mut self, name: &str) -> Result<Vec<u8>, String> {
+        let index = self.find(name).ok_or("the package has no such file")?;
+        let file = self.archive.by_index(index).map_err(|error| error.to_string())?;
+        let mut bytes = Vec::new();
+        Capped { inner: file, left: &mut self.left }.read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+        Ok(bytes)
+    }
+
     pub(super) fn read_model(&mut self, name: &str) -> Result<Model, ReadError> {
         self.read_xml(name, |reader| model::parse(reader, name))
     }

@@ -7,10 +7,11 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use rustc_hash::FxHashMap;
 
-use super::super::colour::{Colours, Rgba};
+use super::super::colour::{Colours, Rgba, WHITE};
 use super::super::error::WriteError;
 use super::super::text::TextOut;
-use crate::io::Unit;
+use super::pictures::Pictures;
+use crate::io::{Paint, Unit, shown_colours};
 use crate::mesh::TriMesh;
 
 const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -21,25 +22,42 @@ const RELATIONSHIPS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
 "#;
 
+/// What is added to the types of files where there are images.
+const TYPES_OF_IMAGES: &str = r#"<Default Extension="png" ContentType="image/png"/><Default Extension="jpg" ContentType="image/jpeg"/><Default Extension="jpeg" ContentType="image/jpeg"/></Types>"#;
+
 /// Writes a package. Without a unit the model states none, which means millimetres.
 pub(in crate::io) fn write(
     mesh: &TriMesh,
-    colours: Option<&Colours>,
+    paint: &Paint<'_>,
     unit: Option<Unit>,
     out: &mut dyn Write,
 ) -> Result<(), WriteError> {
+    let colours = shown_colours(paint.colours, paint.texture);
+    let pictures = paint.texture.map(Pictures::of).filter(|pictures| !pictures.list.is_empty());
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     // A fixed date: the same mesh gives the same bytes.
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
         .last_modified_time(DateTime::default())
         .large_file(3 * mesh.positions.len() + 4 * mesh.triangles.len() > (u32::MAX / 64) as usize);
-    for (name, text) in [("[Content_Types].xml", TYPES), ("_rels/.rels", RELATIONSHIPS)] {
+    let types = match &pictures {
+        Some(_) => TYPES.replace("</Types>", TYPES_OF_IMAGES),
+        None => TYPES.to_owned(),
+    };
+    let mut files = vec![("[Content_Types].xml", types), ("_rels/.rels", RELATIONSHIPS.to_owned())];
+    files.extend(pictures.as_ref().map(|pictures| ("3D/_rels/3dmodel.model.rels", pictures.relationships())));
+    for (name, text) in files {
         zip.start_file(name, options).map_err(std::io::Error::from)?;
         zip.write_all(text.as_bytes())?;
     }
+    // Images are packed already.
+    let stored = options.compression_method(CompressionMethod::Stored);
+    for (path, image) in pictures.iter().flat_map(Pictures::files) {
+        zip.start_file(path, stored.large_file(image.len() > u32::MAX as usize)).map_err(std::io::Error::from)?;
+        zip.write_all(image)?;
+    }
     zip.start_file("3D/3dmodel.model", options).map_err(std::io::Error::from)?;
-    write_model(mesh, colours, unit, &mut zip)?;
+    write_model(mesh, colours.as_deref(), pictures.as_ref(), unit, &mut zip)?;
     let bytes = zip.finish().map_err(std::io::Error::from)?.into_inner();
     Ok(out.write_all(&bytes)?)
 }
@@ -47,22 +65,30 @@ pub(in crate::io) fn write(
 /// The entries of the one group of colours: each colour once, in order of first use.
 struct Palette<'a> {
     mesh: &'a TriMesh,
-    colours: &'a Colours,
+    colours: Option<&'a Colours>,
     entries: Vec<Rgba>,
     numbers: FxHashMap<Rgba, u32>,
 }
 
 impl<'a> Palette<'a> {
-    fn new(mesh: &'a TriMesh, colours: &'a Colours) -> Self {
+    /// The colours of the triangles that are wanted.
+    fn new(mesh: &'a TriMesh, colours: Option<&'a Colours>, wanted: impl Fn(usize) -> bool) -> Self {
         let mut palette = Self { mesh, colours, entries: Vec::new(), numbers: FxHashMap::default() };
-        for colour in (0..mesh.triangles.len()).flat_map(|triangle| colours.corners(mesh, triangle)) {
-            // There are at most 2³² different colours.
-            palette.numbers.entry(colour).or_insert_with(|| {
-                palette.entries.push(colour);
-                (palette.entries.len() - 1) as u32
-            });
+        for triangle in (0..mesh.triangles.len()).filter(|t| wanted(*t)) {
+            for colour in palette.corners(triangle) {
+                // There are at most 2³² different colours.
+                let next = palette.entries.len() as u32;
+                if *palette.numbers.entry(colour).or_insert(next) == next {
+                    palette.entries.push(colour);
+                }
+            }
         }
         palette
+    }
+
+    /// The colours of a triangle; white where there are none.
+    fn corners(&self, triangle: usize) -> [Rgba; 3] {
+        self.colours.map_or([WHITE; 3], |colours| colours.corners(self.mesh, triangle))
     }
 
     fn write_group(&self, text: &mut TextOut<'_>) -> std::io::Result<()> {
@@ -78,7 +104,7 @@ impl<'a> Palette<'a> {
 
     /// The attributes of a triangle: its group, then one entry, or three where the corners differ.
     fn write_entries(&self, triangle: usize, text: &mut TextOut<'_>) {
-        let corners = self.colours.corners(self.mesh, triangle);
+        let corners = self.corners(triangle);
         let same = corners.iter().all(|colour| *colour == corners[0]);
         text.text("\" pid=\"2");
         for (start, colour) in
@@ -93,17 +119,24 @@ impl<'a> Palette<'a> {
 fn write_model(
     mesh: &TriMesh,
     colours: Option<&Colours>,
+    pictures: Option<&Pictures<'_>>,
     unit: Option<Unit>,
     out: &mut dyn Write,
 ) -> std::io::Result<()> {
-    let palette = colours.map(|colours| Palette::new(mesh, colours));
+    let is_picture = |t: usize| pictures.is_some_and(|pictures| pictures.of_triangle(t).is_some());
+    // Where triangles have properties all have one, or they would get that of the object.
+    let has_palette = match pictures {
+        Some(_) => (0..mesh.triangles.len()).any(|t| !is_picture(t)),
+        None => colours.is_some(),
+    };
+    let palette = has_palette.then(|| Palette::new(mesh, colours, |t| !is_picture(t)));
     let mut text = TextOut::new(out);
     text.text("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model");
     if let Some(unit) = unit {
         text.text(&format!(" unit=\"{}\"", unit.word()));
     }
     text.text(" xml:lang=\"en-US\" xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"");
-    if palette.is_some() {
+    if palette.is_some() || pictures.is_some() {
         text.text(" xmlns:m=\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\"");
     }
     text.text(">\n");
@@ -112,9 +145,16 @@ fn write_model(
     if let Some(palette) = &palette {
         palette.write_group(&mut text)?;
     }
+    if let Some(pictures) = pictures {
+        pictures.write_groups(&mut text)?;
+    }
     text.text("<object id=\"1\" type=\"model\"");
     // Where triangles have properties the object shall have one too.
-    text.text(if palette.is_some() { " pid=\"2\" pindex=\"0\"" } else { "" });
+    match (&palette, pictures) {
+        (Some(_), _) => text.text(" pid=\"2\" pindex=\"0\""),
+        (None, Some(pictures)) => text.text(&format!(" pid=\"{}\" pindex=\"0\"", pictures.group(0))),
+        (None, None) => {}
+    }
     text.text("><mesh>\n<vertices>\n");
     for p in &mesh.positions {
         for (start, x) in ["<vertex x=\"", "\" y=\"", "\" z=\""].into_iter().zip(p.to_array()) {
@@ -130,8 +170,10 @@ fn write_model(
             text.text(start);
             text.integer(u64::from(*v));
         }
-        if let Some(palette) = &palette {
-            palette.write_entries(triangle, &mut text);
+        match (pictures.filter(|_| is_picture(triangle)), &palette) {
+            (Some(pictures), _) => pictures.write_entries(triangle, &mut text),
+            (None, Some(palette)) => palette.write_entries(triangle, &mut text),
+            (None, None) => {}
         }
         text.text("\"/>\n");
         text.pass_on()?;

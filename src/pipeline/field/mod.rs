@@ -12,7 +12,10 @@ pub use build::{Built, FieldBuilder, Operand};
 use super::distance::DistanceOutcome;
 use super::frame::Frame;
 use super::morphology::volume;
-use super::{DistanceReport, Dropped, Error, Options, Outcome, Report, TriangleSource, VoxelSize, prepare, refine, stages};
+use super::{
+    DistanceReport, Dropped, Error, Options, Outcome, Report, TriangleCounts, TriangleSource, VoxelSize, prepare, refine,
+    stages,
+};
 use crate::field::filter::FilterError;
 use crate::field::{Extent, Field, FillError, FillOptions, LevelError, Shared, fill, level};
 use crate::fit::{Facets, FitReport, fit};
@@ -112,6 +115,7 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         lattice: true,
         fit: fitted.clone(),
         closed_triangles: made,
+        triangles: TriangleCounts { kept: 0, rebuilt: origins.len() - made, made_up: made },
         stages: stages.finish(),
         ..Report::default()
     };

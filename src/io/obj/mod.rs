@@ -1,25 +1,32 @@
-//! Wavefront OBJ: vertices with or without colours, faces, objects and groups; everything else is passed over.
+//! Wavefront OBJ: vertices with or without colours, faces with texture coordinates, objects and groups, materials; everything else is
+//! passed over.
+
+mod materials;
+mod write;
 
 use std::borrow::Cow;
-use std::io::Write;
+use std::path::Path;
 
 use glam::DVec3;
 
-use super::colour::{Colours, LEVELS_OF_WHITE, vertex_means};
-use super::error::{ReadError, ReadProblem, WriteError};
+use self::materials::Looks;
+use super::colour::LEVELS_OF_WHITE;
+use super::error::{ReadError, ReadProblem};
 use super::soup::{Soup, counted, too_many_vertices};
-use super::text::{Lines, TextOut, Words, integer, number, quoted, quoted_or_end};
+use super::text::{Lines, Words, integer, number, quoted, quoted_or_end};
 use super::{Format, Loaded};
-use crate::mesh::TriMesh;
 
-pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
+pub(super) use write::write;
+
+/// Reads the file at `path`, beside which its materials and images lie.
+pub(super) fn read(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, ReadError> {
     let mut reader = Reader::default();
     let mut lines = Lines::new(bytes);
     while let Some((first, line)) = lines.next() {
         let line = continued(line, &mut lines);
         reader.statement(&line, first)?;
     }
-    reader.finish()
+    reader.finish(path)
 }
 
 /// `line` joined with the ones after it while it ends in a backslash.
@@ -46,6 +53,7 @@ fn continued<'a>(line: &'a [u8], lines: &mut Lines<'a>) -> Cow<'a, [u8]> {
 
 struct Reader {
     soup: Soup,
+    looks: Looks,
     face: Vec<u32>,
     /// The largest index so far and its line: a face may refer to vertices that come later, so
     /// the check waits for the end.
@@ -58,7 +66,7 @@ struct Reader {
 
 impl Default for Reader {
     fn default() -> Self {
-        Self { soup: Soup::new(), face: Vec::new(), largest: None, passed_over: 0, points: 0 }
+        Self { soup: Soup::new(), looks: Looks::default(), face: Vec::new(), largest: None, passed_over: 0, points: 0 }
     }
 }
 
@@ -70,6 +78,18 @@ impl Reader {
             Some(b"f" | b"fo") => self.face(words, at),
             Some(b"o" | b"g") => {
                 self.soup.begin_part(words.rest());
+                Ok(())
+            }
+            Some(b"vt") => {
+                self.looks.coordinate(words);
+                Ok(())
+            }
+            Some(b"usemtl") => {
+                self.looks.material(words.rest(), &mut self.soup.texture);
+                Ok(())
+            }
+            Some(b"mtllib") => {
+                self.looks.library(words.rest());
                 Ok(())
             }
             Some(b"l" | b"curv" | b"curv2" | b"surf") => {
@@ -105,6 +125,8 @@ impl Reader {
 
     fn face(&mut self, words: Words<'_>, at: usize) -> Result<(), ReadError> {
         self.face.clear();
+        self.looks.begin_face();
+        let first = self.soup.triangles.len();
         let count = self.soup.positions.len();
         let mut largest = 0;
         for word in words {
@@ -114,20 +136,25 @@ impl Reader {
             let corner = corner(word, count).map_err(|problem| ReadError::line(at, problem))?;
             largest = largest.max(corner);
             self.face.push(corner);
+            self.looks.corner(word);
         }
         if self.largest.is_none_or(|(known, _)| largest > known) {
             self.largest = Some((largest, at));
         }
-        if largest as usize >= count && self.face.len() > 3 {
-            // The shape of a polygon ahead of its vertices is not known: a fan.
+        // The shape of a polygon ahead of its vertices is not known: a fan.
+        let ahead = largest as usize >= count && self.face.len() > 3;
+        if self.face.len() >= 3 && self.looks.is_textured(self.face.len()) {
+            self.looks.add(&self.face, ahead, &mut self.soup);
+        } else if ahead {
             super::polygon::fan(&self.face, &mut self.soup.triangles);
         } else {
             self.soup.face(&self.face);
         }
+        self.looks.cover(first, &mut self.soup);
         Ok(())
     }
 
-    fn finish(mut self) -> Result<Loaded, ReadError> {
+    fn finish(mut self, path: Option<&Path>) -> Result<Loaded, ReadError> {
         let count = self.soup.positions.len();
         if let Some((largest, line)) = self.largest
             && largest as usize >= count
@@ -144,6 +171,7 @@ impl Reader {
             let what = counted(passed_over, "line, point or free-form statement");
             self.soup.warnings.push(format!("{what} left out"));
         }
+        self.looks.finish(&mut self.soup, path);
         self.soup.finish(Format::Obj, None)
     }
 }
@@ -171,36 +199,4 @@ fn corner(word: &[u8], count: usize) -> Result<u32, ReadProblem> {
         .and_then(|i| u32::try_from(i).ok())
         .filter(|&i| i < u32::MAX)
         .ok_or_else(|| ReadProblem::vertex(index, count))
-}
-
-/// Writes positions, with a colour after each if there are colours, and triangles.
-pub(super) fn write(mesh: &TriMesh, colours: Option<&Colours>, out: &mut dyn Write) -> Result<(), WriteError> {
-    let mut text = TextOut::new(out);
-    let colours = colours.map(|colours| vertex_means(mesh, colours));
-    for (vertex, p) in mesh.positions.iter().enumerate() {
-        text.text("v");
-        for x in p.to_array() {
-            text.text(" ");
-            text.number(x);
-        }
-        if let Some(colour) = colours.as_ref().and_then(|colours| colours.get(vertex)) {
-            for level in &colour[..3] {
-                // Four digits tell 256 levels apart.
-                text.text(" ");
-                text.number((f64::from(*level) / 255.0 * 1e4).round() / 1e4);
-            }
-        }
-        text.text("\n");
-        text.pass_on()?;
-    }
-    for t in &mesh.triangles {
-        text.text("f");
-        for v in t {
-            text.text(" ");
-            text.integer(u64::from(*v) + 1);
-        }
-        text.text("\n");
-        text.pass_on()?;
-    }
-    Ok(text.finish()?)
 }

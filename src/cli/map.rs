@@ -1,0 +1,122 @@
+//! `--map`: what became of the surface, as a PLY file with a colour and a number for each triangle.
+
+use std::path::Path;
+
+use super::exit::Failure;
+use super::output;
+use super::session::Session;
+use crate::io::{self, FaceMap, LegendEntry};
+use crate::mesh::TriMesh;
+use crate::pipeline::{Outcome, TriangleKind, kinds};
+
+/// The colours of the kinds, in their order: blue-grey, orange, magenta. Eyes that lack a kind of cones tell them apart, too (see the tests).
+const KINDS: [[u8; 3]; 3] = [[176, 190, 205], [230, 150, 20], [165, 15, 105]];
+
+/// Walls of canals, by their numbers; none looks like a kind.
+const CANALS: [[u8; 3]; 6] =
+    [[0, 114, 178], [0, 158, 115], [240, 228, 66], [86, 180, 233], [60, 60, 60], [120, 70, 40]];
+
+/// What a kind is, in a legend.
+fn meaning(kind: TriangleKind) -> String {
+    let what = match kind {
+        TriangleKind::Kept => "as it was in the input",
+        TriangleKind::Rebuilt => "surface of the input, made anew",
+        TriangleKind::MadeUp => "no surface of the input there",
+    };
+    format!("{}: {what}", kind.word())
+}
+
+/// Writes the result coloured by what its triangles are, and by the canals that they bound. `operands`: the meshes that it was made of.
+pub fn write(
+    path: &Path,
+    outcome: &Outcome,
+    operands: &[TriMesh],
+    canal_of: &[u32],
+    session: &Session,
+) -> Result<(), Failure> {
+    let kinds = kinds(outcome, operands);
+    session.progress.check()?;
+    let numbers: Vec<u32> = kinds.iter().map(|&kind| kind as u32).collect();
+    let canal = |t: usize| canal_of.get(t).copied().filter(|&canal| canal > 0);
+    let colour = |(t, &kind): (usize, &u32)| match canal(t) {
+        Some(canal) => CANALS[(canal as usize - 1) % CANALS.len()],
+        None => KINDS[kind as usize],
+    };
+    let colours: Vec<[u8; 3]> = numbers.iter().enumerate().map(colour).collect();
+    let canals: Vec<u32> = (0..numbers.len()).map(|t| canal(t).unwrap_or(0)).collect();
+    let most = canals.iter().copied().max().unwrap_or(0);
+    let mut properties: Vec<(&str, &[u32])> = vec![("kind", &numbers)];
+    if most > 0 {
+        properties.push(("canal", &canals));
+    }
+    let words = TriangleKind::ALL.map(|kind| format!("{} {}", kind as u32, kind.word()));
+    let comments = [format!("kind of a face: {}", words.join(", "))];
+    let map = FaceMap { colours: &colours, numbers: &properties, legend: &legend(most), comments: &comments };
+    let mut bytes = Vec::new();
+    io::encode_face_map(&outcome.mesh, &map, &mut bytes).map_err(|error| output::unencoded(path, &error))?;
+    output::write_side(path, &bytes, session)
+}
+
+/// What the colours mean; there are as many canals.
+fn legend(canals: u32) -> Vec<LegendEntry> {
+    let of_kinds = TriangleKind::ALL.iter().map(|&kind| (KINDS[kind as usize], meaning(kind)));
+    let of_canals = (0..CANALS.len() as u32).take(canals as usize).map(|n| {
+        let same: Vec<String> = (n..canals).step_by(CANALS.len()).take(4).map(|c| (c + 1).to_string()).collect();
+        (CANALS[n as usize], format!("{} {}", if same.len() > 1 { "canals" } else { "canal" }, same.join(", ")))
+    });
+    of_kinds.chain(of_canals).map(|(colour, text)| LegendEntry { colour, text }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What an eye without one kind of cones makes of linear light (Machado, Oliveira and Fernandes 2009, severity 1).
+    const WITHOUT: [[[f64; 3]; 3]; 4] = [
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+        [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
+        [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
+    ];
+
+    /// CIE L*a*b* of linear light, where a distance of 2 can just be seen.
+    fn lab([r, g, b]: [f64; 3]) -> [f64; 3] {
+        let f = |t: f64| if t > 0.008856 { t.max(0.0).cbrt() } else { 7.787 * t + 16.0 / 116.0 };
+        let x = f((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505);
+        let y = f(0.2126 * r + 0.7152 * g + 0.0722 * b);
+        let z = f((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089);
+        [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+    }
+
+    fn seen(colour: [u8; 3], eye: &[[f64; 3]; 3]) -> [f64; 3] {
+        let light = colour.map(io::linear_from_srgb).map(f64::from);
+        lab([0, 1, 2].map(|k| (0..3).map(|n| eye[k][n] * light[n]).sum::<f64>().clamp(0.0, 1.0)))
+    }
+
+    #[test]
+    fn every_eye_tells_the_kinds_apart() {
+        let far = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+        for eye in &WITHOUT {
+            for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+                let apart = far(seen(KINDS[i], eye), seen(KINDS[j], eye));
+                assert!(apart > 25.0, "{i} and {j} are {apart} apart for {eye:?}");
+            }
+            for canal in CANALS {
+                let nearest = KINDS.map(|kind| far(seen(kind, eye), seen(canal, eye)));
+                assert!(
+                    nearest.iter().all(|apart| *apart > 8.0),
+                    "{canal:?} is {nearest:?} from the kinds for {eye:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn canals_of_one_colour_share_an_entry() {
+        let texts = |canals| legend(canals).into_iter().map(|entry| entry.text).skip(3).collect::<Vec<_>>();
+        assert_eq!(texts(0), Vec::<String>::new());
+        assert_eq!(texts(2), ["canal 1", "canal 2"]);
+        assert_eq!(texts(7)[..2], ["canals 1, 7", "canal 2"]);
+        assert_eq!(texts(100).len(), CANALS.len());
+    }
+}
