@@ -8,11 +8,16 @@ use clap::{Args, Parser, Subcommand};
 use super::backend::BackendChoice;
 use super::change::RemoveChoice;
 use super::choices::{Defect, EdgeChoice, MethodChoice, OrientChoice, SideChoice, SignChoice, VoteChoice};
+use super::decimate::DecimateArgs;
 use super::devices::DevicesArgs;
 use super::field_args::{FieldArgs, field_help};
+use super::hollow::HollowArgs;
 use super::length::{BandChoice, Length, Simplify, parse_duration, parse_size};
+use super::preset::Preset;
 use super::render::{ViewChoice, parse_view};
 use super::slice::SliceChoice;
+use super::split::SplitArgs;
+use super::transform::TransformArgs;
 use crate::io::{Format, GridFormat, Unit};
 
 pub(super) const EXIT_CODES: &str = "\
@@ -81,13 +86,22 @@ pub enum Verb {
     /// Combine, filter and morph shapes through their distance fields, by an expression
     #[command(after_help = field_help())]
     Field(FieldArgs),
+    /// Shell a solid out: a cavity in it, walls of one thickness, and holes to drain it
+    #[command(after_help = EXIT_CODES)]
+    Hollow(HollowArgs),
+    /// Leave fewer triangles of a solid: a number, a share, or as far as the surface may move
+    #[command(after_help = EXIT_CODES)]
+    Decimate(DecimateArgs),
+    /// Write every body of a file into a file of its own
+    #[command(after_help = EXIT_CODES)]
+    Split(SplitArgs),
     /// Say what is in a mesh file and what is wrong with it
     #[command(after_help = EXIT_CODES)]
     Inspect(InspectArgs),
     /// Measure how far two meshes are from each other
     #[command(after_help = EXIT_CODES)]
     Compare(CompareArgs),
-    /// Write the same triangles in another format; nothing is repaired
+    /// Write the same triangles in another format, size or place; nothing is repaired
     #[command(after_help = EXIT_CODES)]
     Convert(ConvertArgs),
     /// Draw a mesh or a slice of a grid, or two of these for comparison, as a PNG picture
@@ -179,6 +193,14 @@ pub struct ThickenArgs {
     pub solid: SolidArgs,
 }
 
+/// Degrees between level and upright.
+fn overhang_angle(text: &str) -> Result<f64, String> {
+    match text.trim_end_matches('°').parse::<f64>() {
+        Ok(degrees) if (0.0..90.0).contains(&degrees) => Ok(degrees),
+        _ => Err("an angle from 0 to less than 90 degrees is needed".into()),
+    }
+}
+
 /// A number of at least 1.
 fn mitre_limit(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -268,6 +290,9 @@ pub struct InspectArgs {
     /// The mesh to look at
     #[arg(value_name = "IN")]
     pub input: PathBuf,
+    /// Surface that faces down and is steeper than this against the vertical hangs over, degrees; z is up
+    #[arg(long, value_name = "DEG", default_value_t = 45.0, value_parser = overhang_angle)]
+    pub overhang: f64,
     /// Also measure the thickness of walls and gaps along the rays of a lattice
     #[arg(long)]
     pub thickness: bool,
@@ -326,6 +351,9 @@ pub struct ConvertArgs {
     /// Where to write it
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
+    /// Another size and place.
+    #[command(flatten)]
+    pub transform: TransformArgs,
     /// How the input is read.
     #[command(flatten)]
     pub reading: InputArgs,
@@ -391,6 +419,9 @@ pub struct SolidArgs {
     /// Where to write the result
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
+    /// Options that suit printing, scans or parts; those given by hand win
+    #[arg(long, value_enum)]
+    pub preset: Option<Preset>,
     /// Voxels along the longest side of the bounding box
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = clap::value_parser!(u32).range(2..=65536), conflicts_with = "voxel")]
     pub resolution: u32,
@@ -427,6 +458,9 @@ pub struct SolidArgs {
     /// Say what the run would cost, and do nothing
     #[arg(long)]
     pub plan: bool,
+    /// What --preset has set, as flags.
+    #[arg(skip)]
+    pub set_by_preset: Vec<String>,
     /// How the inputs are read.
     #[command(flatten)]
     pub reading: InputArgs,

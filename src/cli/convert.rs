@@ -1,4 +1,4 @@
-//! `convert IN -o OUT`: the same triangles in another format.
+//! `convert IN -o OUT`: the same triangles in another format, or in another place and size.
 
 use serde_json::json;
 
@@ -8,11 +8,11 @@ use super::input;
 use super::output::{Target, write_verified};
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
-use super::words;
+use super::{transform, words};
 use crate::io::{Carried, Colours, Format, Loaded};
 use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
 
-/// Reads one file and writes it again.
+/// Reads one file and writes it again, scaled, turned and moved if that was asked for.
 pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let mut target = Target::new(&args.output, &args.writing)?;
     let mut inputs =
@@ -25,13 +25,18 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
         "out_format": target.options.format.to_string(),
     });
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
-    let Some(input) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
+    let Some(input) = inputs.first_mut() else { return Err(Failure::internal("nothing was read")) };
+    let before = state(&input.loaded.mesh, session)?;
+    let done = transform::apply(&args.transform, &mut input.loaded, unit)?;
+    if let Some(done) = &done {
+        report.options["transform"] = json!(done);
+    }
     if input.loaded.parts.len() > 1 {
         report.warnings.push(format!("the {} objects of the input become one", input.loaded.parts.len()));
     }
     let lost = |colours| lost_colours(colours, &input.loaded.mesh, target.options.format);
     report.warnings.extend(input.loaded.colours.as_ref().and_then(lost));
-    let before = state(&input.loaded.mesh, session)?;
+    let placed = if done.is_some() { state(&input.loaded.mesh, session)? } else { before.clone() };
     let (entry, after) = report.timed("write and verify", |_| {
         write_verified(&target, &input.loaded.mesh, input.loaded.colours.as_ref(), session, |read| {
             check_close(read, &input.loaded.mesh)?;
@@ -40,29 +45,30 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
         })
     })?;
     let triangles = after.triangles;
-    report.inputs[0].validity = Some(before.clone());
+    report.inputs[0].validity = Some(before);
     report.output = Some(OutputEntry { validity: Some(after.clone()), ..entry });
-    let lost = losses(&before, &after);
+    let lost = losses(&placed, &after);
     report.warnings.extend(lost.iter().cloned());
     session.clear_bar();
     session.say(&format!(
-        "{}: {}, as {}{}",
+        "{}: {}, as {}{}{}",
         args.output.display(),
         words::plural(triangles, "triangle"),
         target.options.format,
-        unit.map_or(String::new(), |unit| format!(", in {unit}"))
+        unit.map_or(String::new(), |unit| format!(", in {unit}")),
+        done.map_or(String::new(), |done| format!("; {}", done.words(unit)))
     ));
     Ok(if lost.is_empty() { Exit::Done } else { Exit::Limit })
 }
 
 /// Counts that rounding could worsen; equal positions are one vertex, as STL has it anyway.
-fn state(mesh: &TriMesh, session: &Session) -> Result<Validity, Failure> {
+pub(super) fn state(mesh: &TriMesh, session: &Session) -> Result<Validity, Failure> {
     let options = ValidateOptions { self_intersections: false, weld: true };
     Ok(validate(mesh, &options, &session.progress)?)
 }
 
 /// Whether the file holds the mesh, up to the rounding of its numbers.
-fn check_close(read: &Loaded, mesh: &TriMesh) -> Result<(), Failure> {
+pub(super) fn check_close(read: &Loaded, mesh: &TriMesh) -> Result<(), Failure> {
     let close = |a: glam::DVec3, b: glam::DVec3| (a - b).abs().max_element() <= 1e-6 * a.abs().max_element();
     let same = read.mesh.triangles.len() == mesh.triangles.len()
         && (0..mesh.triangles.len()).all(|t| {
@@ -73,7 +79,7 @@ fn check_close(read: &Loaded, mesh: &TriMesh) -> Result<(), Failure> {
 }
 
 /// Whether the file has the colours, where its format holds them.
-fn check_colours(read: &Loaded, given: &Loaded) -> Result<(), Failure> {
+pub(super) fn check_colours(read: &Loaded, given: &Loaded) -> Result<(), Failure> {
     let Some(colours) = &given.colours else { return Ok(()) };
     let same = |found: &Colours| {
         (0..given.mesh.triangles.len()).all(|t| colours.corners(&given.mesh, t) == found.corners(&read.mesh, t))
@@ -96,7 +102,7 @@ pub(super) fn lost_colours(colours: &Colours, mesh: &TriMesh, format: Format) ->
 }
 
 /// What the rounding to the format's numbers made worse.
-fn losses(before: &Validity, after: &Validity) -> Vec<String> {
+pub(super) fn losses(before: &Validity, after: &Validity) -> Vec<String> {
     let mut sentences = Vec::new();
     if after.degenerate_triangles > before.degenerate_triangles {
         let more = after.degenerate_triangles - before.degenerate_triangles;

@@ -9,6 +9,7 @@ mod compare;
 mod convert;
 mod csg;
 mod csg_parser;
+mod decimate;
 mod devices;
 mod doubts;
 mod ending;
@@ -17,6 +18,7 @@ mod field;
 mod field_args;
 mod files;
 mod given;
+mod hollow;
 mod input;
 mod inspect;
 mod length;
@@ -25,6 +27,7 @@ mod machine;
 mod morphology;
 mod negative;
 mod output;
+mod preset;
 mod progress_bar;
 mod render;
 mod repair;
@@ -33,7 +36,9 @@ mod sdf;
 mod session;
 mod slice;
 mod solid;
+mod split;
 mod summary;
+mod transform;
 mod words;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -42,11 +47,9 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::Parser;
-
 use crate::ldi::Expression;
 use crate::morphology::Operation;
-use args::{Cli, CommonArgs, SolidArgs, Verb};
+use args::{CommonArgs, SolidArgs, Verb};
 use exit::{Exit, Failure};
 use files::Made;
 use report::RunReport;
@@ -54,7 +57,7 @@ use session::{Session, print_failure};
 
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let cli = match preset::parse(std::env::args_os()) {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version also come this way; there is nobody to tell if printing fails.
@@ -117,6 +120,18 @@ fn dispatch(verb: &Verb) -> Exit {
                 ..Job::new("field", &args.common)
             };
             run(job, |session, report| field::run(args, session, report))
+        }
+        Verb::Hollow(args) => {
+            solid("hollow", &args.solid, &[&args.input], |session, report| hollow::run(args, session, report))
+        }
+        Verb::Decimate(args) => {
+            let made = made(Some(&args.output), args.writing.force).into_iter().collect();
+            let job = Job { inputs: vec![&args.input], made, ..Job::new("decimate", &args.common) };
+            run(job, |session, report| decimate::run(args, session, report))
+        }
+        Verb::Split(args) => {
+            let job = Job { inputs: vec![&args.input], ..Job::new("split", &args.common) };
+            run(job, |session, report| split::run(args, session, report))
         }
         Verb::Inspect(args) => {
             let job = Job { inputs: vec![&args.input], ..Job::new("inspect", &args.common) };

@@ -121,6 +121,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
     json!({
         "resolution": resolution,
         "voxel": voxel,
+        "preset": super::preset::words(args),
         "voxel_as_given": args.voxel.map(|length| length.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),

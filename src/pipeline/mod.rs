@@ -7,6 +7,7 @@ mod colours;
 mod distance;
 mod field;
 mod frame;
+mod hollow;
 mod morphology;
 mod order;
 mod plan;
@@ -24,7 +25,7 @@ mod topology;
 pub use apart::StandingReport;
 pub use backend::{Backend, BackendReport};
 pub use canals::{CanalOptions, CanalOutcome, CanalReport, Remove, canals};
-pub use colours::{carry_colours, classes};
+pub use colours::{carry_colours, carry_to_simpler, classes};
 pub use distance::{
     DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, distance,
     plan_distance,
@@ -33,8 +34,9 @@ pub use field::{
     Built, FieldBand, FieldBuilder, FieldReport, Operand, OperandReport, field_grid, field_spacing, field_surface,
     field_values,
 };
+pub use hollow::{Drain, DrainReport, HollowOptions, HollowReport, hollow};
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
-pub use plan::{plan, plan_canals, plan_morphology, plan_thicken};
+pub use plan::{plan, plan_canals, plan_hollow, plan_morphology, plan_thicken};
 pub use report::{LdiReport, Report, StageTime, ThinRegion, ThinReport};
 pub use thicken::{SheetSide, ThickenOptions, ThickenReport, thicken};
 pub use thickness::{LengthsReport, ThicknessReport, thickness};
@@ -236,6 +238,12 @@ pub enum Error {
         number: u32,
         /// Canals found.
         count: u32,
+    },
+    /// A drain that leads nowhere.
+    #[error("{reason}")]
+    Drain {
+        /// One sentence: which, where, and why.
+        reason: String,
     },
     /// The graphics processor was asked for and cannot do it.
     #[error("{reason}")]
