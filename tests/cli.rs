@@ -20,6 +20,8 @@ mod solids;
 mod stops;
 #[path = "cli/testdata.rs"]
 mod testdata;
+#[path = "cli/tools.rs"]
+mod tools;
 #[path = "cli/usage.rs"]
 mod usage;
 

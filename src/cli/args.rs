@@ -26,7 +26,7 @@ Exit status:
   1    internal error
   2    wrong usage
   3    done, but a promise or a stated limit does not hold
-  4    unreadable or empty input, or nothing is enclosed
+  4    unreadable or empty input, one that the verb cannot take, or nothing is enclosed
   5    more memory or threads needed than can be had, or than --max-memory allows
   6    --timeout has passed
   7    a file or stream cannot be written
@@ -193,14 +193,6 @@ pub struct ThickenArgs {
     pub solid: SolidArgs,
 }
 
-/// Degrees between level and upright.
-fn overhang_angle(text: &str) -> Result<f64, String> {
-    match text.trim_end_matches('°').parse::<f64>() {
-        Ok(degrees) if (0.0..90.0).contains(&degrees) => Ok(degrees),
-        _ => Err("an angle from 0 to less than 90 degrees is needed".into()),
-    }
-}
-
 /// A number of at least 1.
 fn mitre_limit(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
@@ -291,7 +283,7 @@ pub struct InspectArgs {
     #[arg(value_name = "IN")]
     pub input: PathBuf,
     /// Surface that faces down and is steeper than this against the vertical hangs over, degrees; z is up
-    #[arg(long, value_name = "DEG", default_value_t = 45.0, value_parser = overhang_angle)]
+    #[arg(long, value_name = "DEG", default_value_t = 45.0, value_parser = super::inspect::overhang_angle)]
     pub overhang: f64,
     /// Also measure the thickness of walls and gaps along the rays of a lattice
     #[arg(long)]

@@ -14,6 +14,14 @@ use crate::io::Unit;
 use crate::mesh::{Bounds, MassProperties, Overhang, ValidateOptions, Validity, validate};
 use crate::pipeline::{self, LengthsReport, Options, ThicknessReport, VoxelSize};
 
+/// Degrees between level and upright.
+pub fn overhang_angle(text: &str) -> Result<f64, String> {
+    match text.trim_end_matches('°').parse::<f64>() {
+        Ok(degrees) if (0.0..90.0).contains(&degrees) => Ok(degrees),
+        _ => Err("an angle from 0 to less than 90 degrees is needed".into()),
+    }
+}
+
 /// Looks at one file and prints a table.
 pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let mut inputs =

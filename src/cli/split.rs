@@ -229,7 +229,7 @@ fn say(session: &Session, report: &RunReport, pieces: &[Piece], unit: Option<Uni
     let voids: usize = pieces.iter().map(|piece| piece.voids).sum();
     let with_voids = match voids {
         0 => String::new(),
-        n => format!(", with {} in them", words::plural(n, "void")),
+        n => format!(", with {} inside", words::plural(n, "void")),
     };
     rows.push(("done", format!("{}{with_voids}", words::plural(pieces.len(), "body"))));
     for (piece, output) in pieces.iter().zip(&report.outputs).take(LISTED) {

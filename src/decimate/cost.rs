@@ -1,6 +1,6 @@
 //! What a collapse costs, and where its vertex goes: sums of squared distances from planes and lines around it.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 /// A determinant below this part of the cube of the trace says that some direction is not determined.
 const SINGULAR: f64 = 1e-30;
@@ -8,22 +8,24 @@ const SINGULAR: f64 = 1e-30;
 /// A sum of weighted squared distances as a function of a point, seen from a place near by.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Form {
-    matrix: DMat3,
+    /// xx, yy, zz and xy, yz, zx of the matrix.
+    squares: DVec3,
+    mixed: DVec3,
     linear: DVec3,
     constant: f64,
 }
 
 impl Form {
     /// Zero everywhere.
-    pub(super) const ZERO: Self = Self { matrix: DMat3::ZERO, linear: DVec3::ZERO, constant: 0.0 };
+    pub(super) const ZERO: Self =
+        Self { squares: DVec3::ZERO, mixed: DVec3::ZERO, linear: DVec3::ZERO, constant: 0.0 };
 
     /// Adds `weight` times (normal · p − offset)².
     #[inline]
     pub(super) fn add(&mut self, normal: DVec3, offset: f64, weight: f64) {
         let n = normal * weight;
-        self.matrix.x_axis += n * normal.x;
-        self.matrix.y_axis += n * normal.y;
-        self.matrix.z_axis += n * normal.z;
+        self.squares += n * normal;
+        self.mixed += n * DVec3::new(normal.y, normal.z, normal.x);
         self.linear += n * offset;
         self.constant += weight * offset * offset;
     }
@@ -38,17 +40,17 @@ impl Form {
     /// Adds `weight` times the squared distance from a point.
     #[inline]
     pub(super) fn add_point(&mut self, at: DVec3, weight: f64) {
-        self.matrix.x_axis.x += weight;
-        self.matrix.y_axis.y += weight;
-        self.matrix.z_axis.z += weight;
+        self.squares += weight;
         self.linear += at * weight;
         self.constant += weight * at.length_squared();
     }
 
     /// The sum of both, the other one weighted.
+    #[inline]
     pub(super) fn plus(&self, other: &Self, weight: f64) -> Self {
         Self {
-            matrix: self.matrix + other.matrix * weight,
+            squares: self.squares + other.squares * weight,
+            mixed: self.mixed + other.mixed * weight,
             linear: self.linear + other.linear * weight,
             constant: self.constant + other.constant * weight,
         }
@@ -57,18 +59,22 @@ impl Form {
     /// The sum at `p`, never negative.
     #[inline]
     pub(super) fn at(&self, p: DVec3) -> f64 {
-        (p.dot(self.matrix * p) - 2.0 * self.linear.dot(p) + self.constant).max(0.0)
+        let crossed = p * DVec3::new(p.y, p.z, p.x);
+        (self.squares.dot(p * p) + 2.0 * (self.mixed.dot(crossed) - self.linear.dot(p)) + self.constant).max(0.0)
     }
 
     /// Where the sum is least, if it is at one place only.
+    #[inline]
     pub(super) fn least(&self) -> Option<DVec3> {
-        let [a, b, c] = [self.matrix.x_axis, self.matrix.y_axis, self.matrix.z_axis];
-        let (determinant, trace) = (a.dot(b.cross(c)), a.x + b.y + c.z);
-        if determinant.is_nan() || determinant <= SINGULAR * trace.powi(3) {
+        let (DVec3 { x: xx, y: yy, z: zz }, DVec3 { x: xy, y: yz, z: zx }) = (self.squares, self.mixed);
+        let (a, b, c) = (DVec3::new(xx, xy, zx), DVec3::new(xy, yy, yz), DVec3::new(zx, yz, zz));
+        let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));
+        let (determinant, trace) = (a.dot(bc), xx + yy + zz);
+        if determinant.is_nan() || determinant <= SINGULAR * trace * trace * trace {
             return None;
         }
         let right = self.linear;
-        let p = DVec3::new(right.dot(b.cross(c)), a.dot(right.cross(c)), a.dot(b.cross(right))) / determinant;
+        let p = DVec3::new(right.dot(bc), right.dot(ca), right.dot(ab)) / determinant;
         p.is_finite().then_some(p)
     }
 }

@@ -36,8 +36,8 @@ const LEAST_SHAPE: f64 = 1e-4;
 pub(super) struct Work {
     pub(super) edges: HalfEdges,
     pub(super) at: Vec<DVec3>,
-    /// Normals of the triangles, twice their area long.
-    normals: Vec<DVec3>,
+    /// The unit normal of each triangle and twice its area.
+    normals: Vec<(DVec3, f64)>,
     classes: Vec<u32>,
 }
 
@@ -92,23 +92,24 @@ impl Work {
 
     fn around(&self, half_edge: u32, middle: DVec3) -> Around {
         let (mut form, mut neighbours, mut count, mut size) = (Form::ZERO, Form::ZERO, 0.0, 0.0);
-        self.star(half_edge, |h, _| {
-            let n = self.normals[h as usize / 3];
-            let length = n.length();
-            size += length;
-            let b = self.place(self.edges.target(h)) - middle;
-            if length > 0.0 {
-                form.add(n, n.dot(b), 1.0 / length);
-            }
-            neighbours.add_point(b, 1.0);
-            count += 1.0;
-        });
-        let ends = [self.edges.origin(half_edge), self.edges.target(half_edge)];
-        for h in ends.into_iter().flat_map(|v| self.edges.ring(v)) {
-            if h != self.edges.twin(half_edge) && self.is_sharp(h) {
-                let [a, b] = [self.edges.origin(h), self.edges.target(h)].map(|v| self.place(v) - middle);
-                let square = a.distance_squared(b);
-                form.add_line(a, (b - a) / square.sqrt(), CREASE * square);
+        let twin = self.edges.twin(half_edge);
+        for (end, first) in [(half_edge, true), (twin, false)] {
+            let origin = self.edges.origin(end);
+            let own = self.place(origin) - middle;
+            for h in self.edges.ring(origin) {
+                let t = h / 3;
+                let to = self.place(self.edges.target(h)) - middle;
+                if first || t != half_edge / 3 && t != twin / 3 {
+                    let (normal, area) = self.normals[t as usize];
+                    form.add(normal, normal.dot(own), area);
+                    neighbours.add_point(to, 1.0);
+                    size += area;
+                    count += 1.0;
+                }
+                if h != twin && self.is_sharp(h) {
+                    let square = own.distance_squared(to);
+                    form.add_line(own, (to - own) / square.sqrt(), CREASE * square);
+                }
             }
         }
         Around { form, neighbours, count, mean: size / count }
@@ -117,11 +118,9 @@ impl Work {
     /// Whether an edge is to be kept: it turns sharply or lies between triangles of different classes.
     fn is_sharp(&self, half_edge: u32) -> bool {
         let [s, t] = [half_edge, self.edges.twin(half_edge)].map(|h| h as usize / 3);
-        let (a, b) = (self.normals[s], self.normals[t]);
-        let turned = a.dot(b);
-        let square = a.length_squared() * b.length_squared();
-        let sharp = turned < 0.0 || turned * turned < SHARP * SHARP * square;
-        sharp && square > 0.0 || !self.classes.is_empty() && self.classes.get(s) != self.classes.get(t)
+        let ((a, of_a), (b, of_b)) = (self.normals[s], self.normals[t]);
+        a.dot(b) < SHARP && of_a > 0.0 && of_b > 0.0
+            || !self.classes.is_empty() && self.classes.get(s) != self.classes.get(t)
     }
 
     /// The ways to collapse an edge, the cheapest first, unused ones at the end without a cost. `free`: a vertex may go anywhere,
@@ -159,12 +158,11 @@ impl Work {
             }
             let [a, b, c] =
                 [self.edges.origin(h), self.edges.target(h), self.edges.apex(h)].map(|vertex| self.place(vertex));
-            let (before, after) = (self.normals[h as usize / 3], normal([way.place, b, c]));
-            let (was, is) = (before.length(), after.length());
+            let ((before, was), (after, is)) = (self.normals[h as usize / 3], normal([way.place, b, c]));
             let longest = |p: DVec3| p.distance_squared(b).max(p.distance_squared(c)).max(b.distance_squared(c));
             let shape = is / longest(way.place);
             let good = shape > LEAST_SHAPE || shape > was / longest(a);
-            fits = good && before.dot(after) > STILL_FACING * was * is;
+            fits = good && before.dot(after) > STILL_FACING;
         });
         fits && self.edges.can_collapse(way.half_edge)
     }
@@ -194,7 +192,9 @@ impl Work {
     }
 }
 
-/// Twice the area long.
-fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a)
+/// The unit normal, or zero, and twice the area.
+fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
+    let normal = (b - a).cross(c - a);
+    let length = normal.length();
+    if length > 0.0 { (normal / length, length) } else { (DVec3::ZERO, 0.0) }
 }

@@ -184,7 +184,7 @@ mod tests {
     use super::*;
     use crate::progress::Progress;
     use rand_xoshiro::Xoshiro256PlusPlus;
-    use rand_xoshiro::rand_core::{RngCore, SeedableRng};
+    use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
     fn random(rng: &mut Xoshiro256PlusPlus) -> f64 {
         (rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64
@@ -225,9 +225,10 @@ mod tests {
         let points: Vec<DVec3> = (0..8).map(corner).collect();
         let mesh = check(&points);
         let (normal, area) = largest_hull_face(&mesh).expect("a face");
-        assert!((area - 12.0).abs() < 1e-12 && normal.x.abs() == 1.0, "{normal} {area}");
+        assert!((area - 12.0).abs() < 1e-12 && normal.x.abs() > 1.0 - 1e-12, "{normal} {area}");
         let turned = TriMesh { positions: points.iter().map(|p| DVec3::new(p.z, p.y, p.x)).collect(), ..mesh };
         let flipped = TriMesh { triangles: turned.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..turned };
-        assert_eq!(largest_hull_face(&flipped).map(|found| found.0), Some(DVec3::NEG_Z));
+        let lower = largest_hull_face(&flipped).expect("a face").0;
+        assert!(lower.distance(DVec3::NEG_Z) < 1e-12, "{lower}");
     }
 }

@@ -93,8 +93,9 @@ pub fn hollow(input: &TriMesh, options: &HollowOptions, progress: &Progress) -> 
     let shrink = MorphologyOptions { operation: Operation::Erode, radius: wall, mitre: None, solid: bare.clone() };
     let nothing = || Error::NothingEnclosed {
         reason: format!(
-            "nothing would be hollow: with walls of {wall}, the solid is nowhere thick enough for a cavity of 64 voxels; \
-             use a thinner wall"
+            "nothing would be hollow: with walls of {}, the solid is nowhere thick enough for a cavity of 64 voxels; \
+             use a thinner wall",
+            short(wall)
         ),
     };
     let eroded = match morphology(&solid.mesh, &shrink, progress) {
@@ -134,7 +135,8 @@ pub fn hollow(input: &TriMesh, options: &HollowOptions, progress: &Progress) -> 
 
 fn check_sizes(options: &HollowOptions, h: f64) -> Result<(), Error> {
     let too_fine = |what: &str, length: f64, voxels: f64| {
-        let reason = format!("{what} of {length} need a voxel of at most {:.4}, and it is {h:.4}", length / voxels);
+        let (length, fits) = (short(length), short(0.99 * length / voxels));
+        let reason = format!("{what} of {length} need a voxel of at most {fits}, and it is {}", short(h));
         Err(Error::VoxelSize { reason })
     };
     if options.wall < LEAST_WALL * h {
@@ -173,7 +175,7 @@ fn drills(solid: &TriMesh, cavity: &TriMesh, drains: &[Drain], h: f64) -> Result
     let (tree, normals) = (ClosestTree::of_mesh(solid), Pseudonormals::of(solid));
     let drill = |(number, drain): (usize, &Drain)| {
         let refused = |why: String| {
-            let at = drain.at.to_array().map(|x| x.to_string()).join(" ");
+            let at = place(drain.at);
             Error::Drain { reason: format!("drain {} at {at} leads into no cavity: {why}", number + 1) }
         };
         let nearest = tree.nearest(drain.at).ok_or_else(|| refused("there is no surface".into()))?;
@@ -220,9 +222,9 @@ impl Shaft<'_> {
             (Some(&enters), through) if through.is_none_or(|&through| enters > through) => enters,
             (_, Some(&through)) => {
                 return Err(format!(
-                    "across the wall, along {}, it comes out again after {:.4} without meeting one; choose a thicker place",
+                    "across the wall, along {}, it comes out again after {} without meeting one",
                     place(-self.out),
-                    -through
+                    short(-through)
                 ));
             }
             _ => return Err(format!("there is none along {}", place(-self.out))),
@@ -270,7 +272,12 @@ impl Shaft<'_> {
 }
 
 fn place(p: DVec3) -> String {
-    p.to_array().map(|x| format!("{:.3}", x + 0.0)).join(" ")
+    p.to_array().map(short).join(" ")
+}
+
+/// Four significant digits.
+fn short(x: f64) -> String {
+    format!("{x:.3e}").parse::<f64>().map_or_else(|_| x.to_string(), |x| x.to_string())
 }
 
 /// How far along a line from `from` it crosses the triangles of a mesh, in no order.
