@@ -20,6 +20,7 @@
 pub mod cli;
 pub mod compare;
 pub mod contour;
+pub mod decimate;
 mod digits;
 pub mod field;
 pub mod fit;

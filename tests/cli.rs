@@ -26,6 +26,8 @@ mod stops;
 mod testdata;
 #[path = "cli/textures.rs"]
 mod textures;
+#[path = "cli/tools.rs"]
+mod tools;
 #[path = "cli/usage.rs"]
 mod usage;
 

@@ -8,12 +8,17 @@ use clap::{Args, Parser, Subcommand};
 use super::backend::BackendChoice;
 use super::change::RemoveChoice;
 use super::choices::{AnyFormat, Defect, EdgeChoice, MethodChoice, OrientChoice, SideChoice, SignChoice, VoteChoice};
+use super::decimate::DecimateArgs;
 use super::devices::DevicesArgs;
 use super::field_args::{FieldArgs, field_help};
+use super::hollow::HollowArgs;
 use super::keep::KeepArgs;
 use super::length::{BandChoice, Length, Simplify, parse_duration, parse_radius, parse_resolution, parse_size};
+use super::preset::Preset;
 use super::render::{ViewChoice, parse_view};
 use super::slice::SliceChoice;
+use super::split::SplitArgs;
+use super::transform::TransformArgs;
 use super::volume::Volume;
 use crate::io::{Format, GridFormat, Unit};
 
@@ -23,7 +28,7 @@ Exit status:
   1    internal error
   2    wrong usage
   3    done, but a promise or a stated limit does not hold
-  4    unreadable or empty input, or nothing is enclosed
+  4    unreadable or empty input, one that the verb cannot take, or nothing is enclosed
   5    more memory or threads needed than can be had, or than --max-memory allows
   6    --timeout has passed
   7    a file or stream cannot be written
@@ -83,13 +88,22 @@ pub enum Verb {
     /// Combine, filter and morph shapes through their distance fields, by an expression
     #[command(after_help = field_help())]
     Field(FieldArgs),
+    /// Shell a solid out: a cavity in it, walls of one thickness, and holes to drain it
+    #[command(after_help = EXIT_CODES)]
+    Hollow(HollowArgs),
+    /// Leave fewer triangles of a solid: a number, a share, or as far as the surface may move
+    #[command(after_help = EXIT_CODES)]
+    Decimate(DecimateArgs),
+    /// Write every body of a file into a file of its own
+    #[command(after_help = EXIT_CODES)]
+    Split(SplitArgs),
     /// Say what is in a mesh file and what is wrong with it
     #[command(after_help = EXIT_CODES, aliases = ["info", "check"])]
     Inspect(InspectArgs),
     /// Measure how far two meshes are from each other
     #[command(after_help = EXIT_CODES, alias = "diff")]
     Compare(CompareArgs),
-    /// Write the same triangles, or the same values of a grid, in another format; nothing is repaired
+    /// Write the same triangles in another format, size or place, or a grid in another format; nothing is repaired
     #[command(after_help = EXIT_CODES)]
     Convert(ConvertArgs),
     /// Draw a mesh or a slice of a grid, or two of these for comparison, as a PNG picture
@@ -270,6 +284,9 @@ pub struct InspectArgs {
     /// The mesh, or the grid (VTI, NRRD, NPY, VDB), to look at
     #[arg(value_name = "IN")]
     pub input: PathBuf,
+    /// Surface that faces down and is steeper than this against the vertical hangs over, degrees; z is up
+    #[arg(long, value_name = "DEG", default_value_t = 45.0, value_parser = super::inspect::overhang_angle)]
+    pub overhang: f64,
     /// Also measure the thickness of walls and gaps along the rays of a lattice
     #[arg(long)]
     pub thickness: bool,
@@ -328,6 +345,9 @@ pub struct ConvertArgs {
     /// Where to write it
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
+    /// Another size and place.
+    #[command(flatten)]
+    pub transform: TransformArgs,
     /// How the input is read.
     #[command(flatten)]
     pub reading: InputArgs,
@@ -396,6 +416,9 @@ pub struct SolidArgs {
     /// Where to write the result
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
+    /// Options that suit printing, scans or parts; those given by hand win
+    #[arg(long, value_enum)]
+    pub preset: Option<Preset>,
     /// Voxels along the longest side of the bounding box
     #[arg(long, value_name = "N", default_value_t = 256, value_parser = parse_resolution, conflicts_with = "voxel")]
     pub resolution: u32,
@@ -435,6 +458,9 @@ pub struct SolidArgs {
     /// Say what the run would cost, and do nothing
     #[arg(long)]
     pub plan: bool,
+    /// What --preset has set, as flags.
+    #[arg(skip)]
+    pub set_by_preset: Vec<String>,
     /// How the inputs are read.
     #[command(flatten)]
     pub reading: InputArgs,

@@ -6,6 +6,7 @@ use serde_json::json;
 
 use super::args::CommonArgs;
 use super::exit::Failure;
+use super::hollow::DrainChoice;
 use super::length::{Length, Scale};
 use super::report::RunReport;
 use super::session::Session;
@@ -13,7 +14,8 @@ use super::words::{self, UnitName};
 use crate::mesh::TriMesh;
 use crate::morphology::{Canal, Operation};
 use crate::pipeline::{
-    self, CanalOptions, CanalReport, MorphologyOptions, Options, Outcome, Plan, Remove, SheetSide, ThickenOptions,
+    self, CanalOptions, CanalReport, HollowOptions, MorphologyOptions, Options, Outcome, Plan, Remove, SheetSide,
+    ThickenOptions,
 };
 
 /// A change, as asked for.
@@ -34,6 +36,13 @@ pub enum Change {
         max_diameter: Length,
         /// Which are filled; `None`: they are listed.
         remove: Option<RemoveChoice>,
+    },
+    /// Make a cavity.
+    Hollow {
+        /// Thickness of the wall.
+        wall: Length,
+        /// Holes through it.
+        drains: Vec<DrainChoice>,
     },
     /// Let thin walls and open sheets grow.
     Thicken {
@@ -96,6 +105,7 @@ impl Change {
         Ok(match self.resolved(options, scale)? {
             Resolved::Morphology(options) => pipeline::plan_morphology(mesh, &options),
             Resolved::Canals(options) => pipeline::plan_canals(mesh, &options),
+            Resolved::Hollow(options) => pipeline::plan_hollow(mesh, &options),
             Resolved::Thicken(options) => pipeline::plan_thicken(mesh, &options),
         })
     }
@@ -120,6 +130,10 @@ impl Change {
                 report.options["max_diameter"] = json!(options.max_diameter);
                 let found = pipeline::canals(mesh, &options, progress);
                 found.map(|found| Changed { outcome: found.outcome, canal_of: found.canal_of })
+            }
+            Resolved::Hollow(options) => {
+                report.options["wall"] = json!(options.wall);
+                pipeline::hollow(mesh, &options, progress).map(Changed::from)
             }
             Resolved::Thicken(options) => {
                 report.options["least"] = json!(options.least);
@@ -147,6 +161,10 @@ impl Change {
                 };
                 Resolved::Canals(CanalOptions { max_diameter: max_diameter.resolve(scale)?, remove, solid })
             }
+            Self::Hollow { wall, drains } => {
+                let drains = drains.iter().map(|drain| drain.resolve(scale)).collect::<Result<_, Failure>>()?;
+                Resolved::Hollow(HollowOptions { wall: wall.resolve(scale)?, drains, solid })
+            }
             Self::Thicken { least, side } => {
                 Resolved::Thicken(ThickenOptions { least: least.resolve(scale)?, side: *side, solid })
             }
@@ -158,6 +176,7 @@ impl Change {
 enum Resolved {
     Morphology(MorphologyOptions),
     Canals(CanalOptions),
+    Hollow(HollowOptions),
     Thicken(ThickenOptions),
 }
 

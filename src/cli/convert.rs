@@ -1,4 +1,4 @@
-//! `convert IN -o OUT`: the same triangles in another format.
+//! `convert IN -o OUT`: the same triangles in another format, or in another place and size.
 
 use serde_json::json;
 
@@ -11,11 +11,11 @@ use super::output::{Target, write_verified};
 use super::paint::{self, Arranged};
 use super::report::{OutputEntry, RunReport};
 use super::session::Session;
-use super::{grids, keep, words};
+use super::{grids, keep, transform, words};
 use crate::io::{Loaded, Paint};
 use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
 
-/// Reads one file and writes it again.
+/// Reads one file and writes it again, scaled, turned and moved if that was asked for.
 pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let mut given = report
         .timed("read", |report| Given::read(&[&args.input], &args.reading, None, session, &mut report.warnings))?;
@@ -23,7 +23,7 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     if !given.grids.is_empty() {
         return grids::convert(args, &given, unit, session, report);
     }
-    let inputs = given.meshes;
+    let mut inputs = given.meshes;
     if let (None, Some(AnyFormat::Grid(_))) = (args.writing.out_format, AnyFormat::from_path(&args.output)) {
         return Err(grids::no_field(&input::label(&args.input), &args.output));
     }
@@ -35,7 +35,12 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
         "out_format": target.options.format.to_string(),
     });
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
-    let Some(input) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
+    let Some(input) = inputs.first_mut() else { return Err(Failure::internal("nothing was read")) };
+    let before = state(&input.loaded.mesh, session)?;
+    let done = transform::apply(&args.transform, &mut input.loaded, unit)?;
+    if let Some(done) = &done {
+        report.options["transform"] = json!(done);
+    }
     if input.loaded.parts.len() > 1 {
         report.warnings.push(format!("the {} objects of the input become one", input.loaded.parts.len()));
     }
@@ -43,7 +48,7 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
     report.warnings.extend(paint::lost(mesh, &paint, &target));
     report.warnings.extend(target.unit_note());
-    let before = state(mesh, session)?;
+    let placed = if done.is_some() { state(mesh, session)? } else { before.clone() };
     let arranged = Arranged::new(mesh, &paint, target.options.format);
     let (entry, after) = report.timed("write and verify", |_| {
         write_verified(&target, &arranged.mesh, arranged.paint(), session, |read| {
@@ -52,35 +57,40 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
             let after = state(&read.mesh, session)?;
             let keeps = args.keeping.keep_partial || args.writing.force;
             match is_mostly_lost(&before, &after) && !keeps {
-                true => Err(keep::withheld(&losses(&before, &after), Some(&args.output), "obj, ply, off and 3mf keep all digits")),
+                true => Err(keep::withheld(
+                    &losses(&before, &after),
+                    Some(&args.output),
+                    "obj, ply, off and 3mf keep all digits",
+                )),
                 false => Ok(after),
             }
         })
     })?;
     let triangles = after.triangles;
-    report.inputs[0].validity = Some(before.clone());
+    report.inputs[0].validity = Some(before);
     report.output = Some(OutputEntry { validity: Some(after.clone()), ..entry });
-    let lost = losses(&before, &after);
+    let lost = losses(&placed, &after);
     report.warnings.extend(lost.iter().cloned());
     session.clear_bar();
     session.say(&format!(
-        "{}: {}, as {}{}",
+        "{}: {}, as {}{}{}",
         args.output.display(),
         words::plural(triangles, "triangle"),
         target.options.format,
-        target.options.unit_in_file().map_or(String::new(), |unit| format!(", in {unit}"))
+        target.options.unit_in_file().map_or(String::new(), |unit| format!(", in {unit}")),
+        done.map_or(String::new(), |done| format!("; {}", done.words(unit)))
     ));
     Ok(if lost.is_empty() { Exit::Done } else { Exit::Limit })
 }
 
 /// Counts that rounding could worsen; equal positions are one vertex, as STL has it anyway.
-fn state(mesh: &TriMesh, session: &Session) -> Result<Validity, Failure> {
+pub(super) fn state(mesh: &TriMesh, session: &Session) -> Result<Validity, Failure> {
     let options = ValidateOptions { self_intersections: false, weld: true };
     Ok(validate(mesh, &options, &session.progress)?)
 }
 
 /// Whether the file holds the mesh, times a factor, up to the rounding of its numbers.
-fn check_close(read: &Loaded, mesh: &TriMesh, factor: f64) -> Result<(), Failure> {
+pub(super) fn check_close(read: &Loaded, mesh: &TriMesh, factor: f64) -> Result<(), Failure> {
     let close = |a: glam::DVec3, b: glam::DVec3| (a - b).abs().max_element() <= 1e-6 * a.abs().max_element();
     let same = read.mesh.triangles.len() == mesh.triangles.len()
         && (0..mesh.triangles.len()).all(|t| {
@@ -102,7 +112,7 @@ fn is_mostly_lost(before: &Validity, after: &Validity) -> bool {
 }
 
 /// What the rounding to the format's numbers made worse.
-fn losses(before: &Validity, after: &Validity) -> Vec<String> {
+pub(super) fn losses(before: &Validity, after: &Validity) -> Vec<String> {
     let mut sentences = Vec::new();
     if after.degenerate_triangles > before.degenerate_triangles {
         let more = after.degenerate_triangles - before.degenerate_triangles;

@@ -237,7 +237,8 @@ mod tests {
     use std::sync::{Arc, Mutex};
 
     const VERBS: [&str; 12] = [
-        "repair", "csg", "dilate", "close", "canals", "thicken", "sdf", "field", "inspect", "compare", "convert", "render",
+        "repair", "csg", "dilate", "close", "canals", "thicken", "sdf", "field", "inspect", "compare", "convert",
+        "render",
     ];
 
     #[test]
@@ -357,8 +358,9 @@ mod tests {
         course.begin("compare", Duration::from_secs(10));
         course.share(0.5, Duration::from_secs(40));
         assert_eq!(course.line(Duration::from_secs(40)), "40 s: comparing, 40 %, about 60 s left");
-        assert_eq!([99, 100, 5999, 6000, 9000].map(|s| about(Duration::from_secs(s))), [
-            "99 s", "2 min", "100 min", "2 hours", "3 hours"
-        ]);
+        assert_eq!(
+            [99, 100, 5999, 6000, 9000].map(|s| about(Duration::from_secs(s))),
+            ["99 s", "2 min", "100 min", "2 hours", "3 hours"]
+        );
     }
 }

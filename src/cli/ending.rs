@@ -2,6 +2,7 @@
 //! can wait for ever: neither for the work, nor for whoever reads what the program writes.
 
 use std::io::Write;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -40,8 +41,21 @@ type Words = (Failure, Sender<()>);
 pub struct State {
     /// Files that have not got their names yet.
     pub drafts: Vec<Draft>,
+    /// A folder that was made for them.
+    pub folder: Option<PathBuf>,
     /// The exit status, once the work is done and the files are in their places.
     pub finished: Option<Exit>,
+}
+
+impl State {
+    /// Removes all files that have not got their names, and the folder that was made for them.
+    pub fn discard(&mut self) {
+        self.drafts.clear();
+        if let Some(folder) = self.folder.take() {
+            // It stays when somebody else has put something into it.
+            let _ = std::fs::remove_dir(folder);
+        }
+    }
 }
 
 impl Ending {
@@ -93,7 +107,7 @@ impl Ending {
     fn abandon(&self, failure: &Failure) {
         let mut state = self.lock();
         let exit = state.finished.unwrap_or_else(|| {
-            state.drafts.clear();
+            state.discard();
             self.last_words(failure);
             failure.exit
         });

@@ -144,6 +144,7 @@ impl Failure {
             Error::MissingCanal { .. } => {
                 Self::usage(error.to_string()).hint("without --remove they are listed with their numbers")
             }
+            Error::Drain { reason } => Self::usage(reason.clone()).hint("another point for it, or a thinner wall"),
             Error::Filter(error) => Self::usage(error.to_string()),
             Error::Gpu { reason, hint } => Self::new(Exit::Internal, reason.clone()).hint(hint.clone()),
             Error::MissingOperand { .. } => Self::internal(error.to_string()),

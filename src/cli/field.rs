@@ -337,7 +337,7 @@ impl Run<'_> {
         if let Some(volume) = self.args.drop_smaller {
             let scale = Scale { voxel: Some(outcome.lattice.h), ..*self.scale };
             let least = volume.resolve(&scale)?;
-            (outcome, _) = pipeline::drop_smaller(outcome, least).map_err(|e| self.failure(&e))?;
+            (outcome, _) = pipeline::drop_smaller(outcome, &[], least).map_err(|e| self.failure(&e))?;
             account.smaller = outcome.report.smaller;
         }
         report.options["voxel"] = json!(outcome.lattice.h);

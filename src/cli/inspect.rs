@@ -12,8 +12,16 @@ use super::report::RunReport;
 use super::session::Session;
 use super::{grids, summary, words};
 use crate::io::Unit;
-use crate::mesh::{Bounds, ValidateOptions, Validity, validate};
+use crate::mesh::{Bounds, MassProperties, Overhang, ValidateOptions, Validity, validate};
 use crate::pipeline::{self, LengthsReport, Options, ThicknessReport, VoxelSize};
+
+/// Degrees between level and upright.
+pub fn overhang_angle(text: &str) -> Result<f64, String> {
+    match text.trim_end_matches('°').parse::<f64>() {
+        Ok(degrees) if (0.0..90.0).contains(&degrees) => Ok(degrees),
+        _ => Err("an angle from 0 to less than 90 degrees is needed".into()),
+    }
+}
 
 /// Looks at one file and prints a table.
 pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
@@ -30,6 +38,9 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
     report.warnings.extend(summary::size_doubts(&input.loaded, unit));
     report.options = json!({ "unit": unit.map(|unit| unit.to_string()) });
     report.inputs = vec![super::report::InputEntry { validity: Some(validity.clone()), ..input.entry.clone() }];
+    let solid = validity.is_oriented_manifold();
+    report.mass = solid.then(|| MassProperties::of(&input.loaded.mesh)).flatten();
+    report.overhang = solid.then(|| Overhang::of(&input.loaded.mesh, args.overhang));
     if args.thickness {
         report.thickness = Some(report.timed("thickness", |_| thickness(args, input, unit, session))?);
     }
@@ -37,6 +48,8 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
     if !args.common.json {
         let mut rows = summary::inspection(input, &validity, unit);
         let name = unit.map(|unit| unit.to_string());
+        rows.extend(report.mass.iter().flat_map(|mass| mass_rows(mass, name.as_deref())));
+        rows.extend(report.overhang.iter().map(|found| overhang_row(found, &validity, name.as_deref())));
         rows.extend(report.thickness.iter().flat_map(|thickness| thickness_rows(thickness, name.as_deref())));
         super::output::write_stream(summary::table(&rows).as_bytes())?;
     }
@@ -45,6 +58,38 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
         return Ok(Exit::Done);
     }
     Err(Failure::new(Exit::Limit, format!("{} has {}, as --fail-on asks", input.label, words::list(&found))))
+}
+
+fn mass_rows(mass: &MassProperties, unit: words::UnitName<'_>) -> Vec<summary::Row> {
+    // Of density 1 the mass is the volume, and moments have the fifth power of a length.
+    let moments = |values: [f64; 3]| {
+        let values = values.map(words::number).join(" ");
+        unit.map_or(values.clone(), |unit| format!("{values} {unit}⁵"))
+    };
+    let axes: Vec<String> = mass.axes.iter().map(|axis| axis.map(words::number).join(" ")).collect();
+    let [xx, xy, xz] = mass.inertia[0];
+    let ([_, yy, yz], [_, _, zz]) = (mass.inertia[1], mass.inertia[2]);
+    vec![
+        ("centre", format!("of mass: {}", words::with_unit(&mass.centre.map(words::number).join(" "), unit))),
+        ("inertia", format!("about it, of density 1: xx yy zz {}", moments([xx, yy, zz]))),
+        ("inertia", format!("xy xz yz {}", moments([xy, xz, yz]))),
+        ("inertia", format!("principal {}", moments(mass.moments))),
+        ("inertia", format!("about the axes {}", axes.join(", "))),
+    ]
+}
+
+fn overhang_row(found: &Overhang, validity: &Validity, unit: words::UnitName<'_>) -> summary::Row {
+    let share = words::number(100.0 * found.area / validity.area.max(f64::MIN_POSITIVE));
+    let degrees = words::number(found.degrees);
+    let resting = words::area(found.resting, unit);
+    let text = match found.area {
+        0.0 => format!("none steeper than {degrees}° with z up; {resting} rests on the plate"),
+        area => {
+            let area = words::area(area, unit);
+            format!("{area} ({share} % of the area) steeper than {degrees}° with z up; {resting} rests on the plate")
+        }
+    };
+    ("overhang", text)
 }
 
 fn thickness(
@@ -72,7 +117,8 @@ fn thickness_rows(found: &ThicknessReport, unit: words::UnitName<'_>) -> Vec<sum
         }
         let [first, _, _, half, _, most] = lengths.percentiles.map(|length| words::length(length, unit));
         let thin = words::percent((lengths.thin * lengths.count as f64).round() as usize, lengths.count);
-        format!("1 % under {first}, half under {half}, 95 % under {most}; {thin} under 2 voxels")
+        let least = words::length(lengths.least, unit);
+        format!("thinnest {least}, 1 % under {first}, half under {half}, 95 % under {most}; {thin} under 2 voxels")
     };
     let mut rows = vec![("walls", described(&found.walls)), ("gaps", described(&found.gaps))];
     if let (Some(voxel), Some(resolution)) = (found.voxel_that_keeps, found.resolution_that_keeps) {
@@ -81,7 +127,12 @@ fn thickness_rows(found: &ThicknessReport, unit: words::UnitName<'_>) -> Vec<sum
         rows.push(("keeps", kept));
     } else if found.walls.count + found.gaps.count > 0 {
         let finest = words::with_unit(&words::rounded_up(found.finest), unit);
-        rows.push(("keeps", format!("no voxel is small enough to put two into 99 % of the walls and gaps; the finest possible is {finest}")));
+        rows.push((
+            "keeps",
+            format!(
+                "no voxel is small enough to put two into 99 % of the walls and gaps; the finest possible is {finest}"
+            ),
+        ));
     }
     if found.silent > 0.0 {
         rows.push((

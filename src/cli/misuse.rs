@@ -42,8 +42,10 @@ fn is_a_mesh(word: &str) -> bool {
 }
 
 fn no_verb(file: &str) -> Failure {
-    Failure::usage(format!("what to do with {file} is not said: a verb comes first"))
-        .hint(format!("`meshwright repair {file} -o {}` mends it, `meshwright inspect {file}` says what is wrong with it", repaired(file)))
+    Failure::usage(format!("what to do with {file} is not said: a verb comes first")).hint(format!(
+        "`meshwright repair {file} -o {}` mends it, `meshwright inspect {file}` says what is wrong with it",
+        repaired(file)
+    ))
 }
 
 /// `part.stl` as `part_repaired.stl`.
@@ -128,7 +130,10 @@ mod tests {
             ("grow", "dilate"),
             ("shrink", "erode"),
         ] {
-            assert_eq!(Cli::command().find_subcommand(word).map(|found| found.get_name().to_string()), Some(verb.into()));
+            assert_eq!(
+                Cli::command().find_subcommand(word).map(|found| found.get_name().to_string()),
+                Some(verb.into())
+            );
         }
     }
 }

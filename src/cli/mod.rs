@@ -10,6 +10,7 @@ mod convert;
 mod course;
 mod csg;
 mod csg_parser;
+mod decimate;
 mod devices;
 mod doubts;
 mod dropped;
@@ -20,6 +21,7 @@ mod field_args;
 mod files;
 mod given;
 mod grids;
+mod hollow;
 mod input;
 mod inspect;
 mod keep;
@@ -32,6 +34,7 @@ mod morphology;
 mod negative;
 mod output;
 mod paint;
+mod preset;
 mod progress_bar;
 mod render;
 mod repair;
@@ -40,7 +43,9 @@ mod sdf;
 mod session;
 mod slice;
 mod solid;
+mod split;
 mod summary;
+mod transform;
 mod volume;
 mod words;
 
@@ -50,11 +55,9 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::Parser;
-
 use crate::ldi::Expression;
 use crate::morphology::Operation;
-use args::{Cli, CommonArgs, SolidArgs, Verb};
+use args::{CommonArgs, SolidArgs, Verb};
 use exit::{Exit, Failure};
 use files::{KeptFiles, Made};
 use report::RunReport;
@@ -62,11 +65,13 @@ use session::{Session, print_failure};
 
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let cli = match preset::parse(std::env::args_os()) {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version also come this way; there is nobody to tell if printing fails.
-            match misuse::explain(&error, &std::env::args_os().skip(1).collect::<Vec<_>>()).filter(|_| error.use_stderr()) {
+            match misuse::explain(&error, &std::env::args_os().skip(1).collect::<Vec<_>>())
+                .filter(|_| error.use_stderr())
+            {
                 Some(failure) => print_failure(&failure),
                 None => drop(error.print()),
             }
@@ -132,6 +137,18 @@ fn dispatch(verb: &Verb) -> Exit {
                 ..Job::new("field", &args.common)
             };
             run(job, |session, report| field::run(args, session, report))
+        }
+        Verb::Hollow(args) => {
+            solid("hollow", &args.solid, &[&args.input], |session, report| hollow::run(args, session, report))
+        }
+        Verb::Decimate(args) => {
+            let made = made(Some(&args.output), args.writing.force).into_iter().collect();
+            let job = Job { inputs: vec![&args.input], made, ..Job::new("decimate", &args.common) };
+            run(job, |session, report| decimate::run(args, session, report))
+        }
+        Verb::Split(args) => {
+            let job = Job { inputs: vec![&args.input], ..Job::new("split", &args.common) };
+            run(job, |session, report| split::run(args, session, report))
         }
         Verb::Inspect(args) => {
             let job = Job { inputs: vec![&args.input], ..Job::new("inspect", &args.common) };

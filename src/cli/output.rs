@@ -81,8 +81,8 @@ impl Target {
 
 /// Extensions that say what is in a file, beside those of the formats for meshes and lattices.
 const KNOWN: [&str; 28] = [
-    "png", "jpg", "jpeg", "gif", "bmp", "tif", "tiff", "webp", "svg", "pdf", "json", "html", "xml", "zip", "step", "stp", "iges",
-    "igs", "dxf", "dwg", "fbx", "dae", "3ds", "blend", "amf", "x3d", "wrl", "usd",
+    "png", "jpg", "jpeg", "gif", "bmp", "tif", "tiff", "webp", "svg", "pdf", "json", "html", "xml", "zip", "step",
+    "stp", "iges", "igs", "dxf", "dwg", "fbx", "dae", "3ds", "blend", "amf", "x3d", "wrl", "usd",
 ];
 
 /// Refuses a name that says something else than what is written to it.

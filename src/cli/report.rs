@@ -11,7 +11,8 @@ use super::input::is_stream;
 use super::machine::peak_memory;
 use super::session::Session;
 use crate::compare::Comparison;
-use crate::mesh::Validity;
+use crate::decimate::DecimateReport;
+use crate::mesh::{MassProperties, Overhang, Validity};
 use crate::pipeline::{DistancePlan, DistanceReport, FieldReport, Plan, Report, StageTime, ThicknessReport};
 
 /// Raised when a field changes its meaning or goes away; new fields do not raise it.
@@ -52,13 +53,22 @@ pub struct RunReport {
     /// The lattice that `inspect` looked at.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid: Option<super::grids::GridEntry>,
+    /// What `decimate` did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub decimate: Option<DecimateReport>,
+    /// Centre of mass and moments, for `inspect` of a closed, oriented mesh.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mass: Option<MassProperties>,
+    /// What hangs over, for `inspect`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overhang: Option<Overhang>,
     /// What `inspect --thickness` measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub thickness: Option<ThicknessReport>,
     /// The graphics adapters, for `devices`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub devices: Option<super::devices::DeviceReport>,
-    /// What `compare` measured.
+    /// What `compare` measured, and how far `decimate` moved the surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
     /// The slices that `render` drew.
@@ -67,6 +77,9 @@ pub struct RunReport {
     /// The written file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub output: Option<OutputEntry>,
+    /// The files that `split` has written.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub outputs: Vec<OutputEntry>,
     /// Sentences a user should read.
     pub warnings: Vec<String>,
     /// Wall-clock seconds of each stage, in order.
@@ -159,11 +172,15 @@ impl RunReport {
             distance: None,
             fields: Vec::new(),
             grid: None,
+            decimate: None,
+            mass: None,
+            overhang: None,
             thickness: None,
             devices: None,
             comparison: None,
             slices: Vec::new(),
             output: None,
+            outputs: Vec::new(),
             warnings: Vec::new(),
             stages: Vec::new(),
             seconds: 0.0,

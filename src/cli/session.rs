@@ -106,9 +106,17 @@ impl Session {
         if files { Ok(self.progress.check()?) } else { Ok(()) }
     }
 
+    /// Makes a folder for files that [`Session::publish`] will name; it is gone again if the run ends before.
+    pub fn make_folder(&self, path: &Path) -> Result<(), Failure> {
+        let mut state = self.ending.lock();
+        std::fs::create_dir(path).map_err(|error| output::unwritable(path, &error))?;
+        state.folder = Some(path.to_owned());
+        Ok(())
+    }
+
     /// Removes all files that have not got their names.
     pub fn discard(&self) {
-        self.ending.lock().drafts.clear();
+        self.ending.lock().discard();
     }
 
     /// The last, indivisible step: gives all files their names, or none. After it, nothing can undo the run, which ends
@@ -118,6 +126,7 @@ impl Session {
         let drafts = std::mem::take(&mut state.drafts);
         let targets: Vec<PathBuf> = drafts.iter().map(|draft| draft.target().to_owned()).collect();
         publish(drafts).map_err(|(number, error)| output::unwritable(&targets[number], &error))?;
+        state.folder = None;
         state.finished = Some(exit);
         drop(state);
         flush_folders(targets.iter().map(PathBuf::as_path));

@@ -125,6 +125,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
     json!({
         "resolution": resolution,
         "voxel": voxel,
+        "preset": super::preset::words(args),
         "voxel_as_given": args.voxel.map(|length| length.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
@@ -208,8 +209,8 @@ fn make(
     let Changed { mut outcome, mut canal_of } = made.map_err(|e| failure(&e, inputs, unit, args))?;
     if let Some(volume) = args.drop_smaller {
         let left;
-        (outcome, left) =
-            pipeline::drop_smaller(outcome, volume.resolve(scale)?).map_err(|e| failure(&e, inputs, unit, args))?;
+        (outcome, left) = pipeline::drop_smaller(outcome, &meshes, volume.resolve(scale)?)
+            .map_err(|e| failure(&e, inputs, unit, args))?;
         if !canal_of.is_empty() {
             canal_of = left.into_iter().map(|t| canal_of[t]).collect();
         }
@@ -267,7 +268,9 @@ pub(super) fn write<'a>(
     report.warnings.extend(of_unit);
     let factor = target.options.factor();
     let (entry, validity) = report.timed("write and verify", |_| {
-        write_verified(target, &stored, arranged.paint(), session, |read| judge(read, (&stored, factor), moved, session))
+        write_verified(target, &stored, arranged.paint(), session, |read| {
+            judge(read, (&stored, factor), moved, session)
+        })
     })?;
     report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
     Ok(())

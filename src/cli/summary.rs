@@ -1,11 +1,11 @@
 //! What a run says to a person: a few aligned lines, made from the report.
 
 use super::course::in_words;
-use super::{doubts, dropped};
 use super::input::Input;
 use super::report::{InputEntry, RunReport};
 use super::session::Session;
 use super::words::{self, UnitName};
+use super::{doubts, dropped};
 use crate::io::{Loaded, Unit};
 use crate::mesh::Validity;
 use crate::morphology::Operation;
@@ -37,6 +37,7 @@ pub fn say(session: &Session, report: &RunReport, unit: UnitName<'_>) {
 
 fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
     let mut rows = input_rows(report);
+    rows.extend(report.options["preset"].as_str().map(|text| ("preset", text.to_owned())));
     if let Some(pipeline) = &report.pipeline {
         rows.extend(done(pipeline, unit).into_iter().map(|text| ("done", text)));
         if pipeline.lattice {
@@ -155,6 +156,8 @@ fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
         };
         let volume = words::percent_change(change.volume_before, change.volume_after);
         parts.push(format!("{word} {by}: volume {volume}; {} new", words::plural(change.made, "triangle")));
+    } else if let Some(hollow) = &pipeline.hollow {
+        parts.extend(super::hollow::done(hollow, unit));
     } else if let Some(thick) = &pipeline.thicken {
         parts.push(thickened(thick, pipeline.closed_triangles, unit));
     }
@@ -295,16 +298,12 @@ pub fn inspection(input: &Input, validity: &Validity, unit: Option<Unit>) -> Vec
         unused => format!("{}, {} of them unused", words::count(validity.vertices), words::count(unused)),
     };
     let yes_no = |yes: bool| if yes { "yes" } else { "no" };
-    let area = match name {
-        Some(unit) => format!("{} {unit}²", words::number(validity.area)),
-        None => words::number(validity.area),
-    };
     rows.extend([
         ("triangles", words::count(validity.triangles)),
         ("vertices", vertices),
         ("surfaces", words::count(validity.bodies)),
         ("genus", validity.genus.map_or("(not a closed manifold)".into(), |genus| genus.to_string())),
-        ("area", area),
+        ("area", words::area(validity.area, name)),
         ("volume", words::volume(validity.volume, name)),
         ("closed", yes_no(validity.is_closed()).into()),
         ("oriented", yes_no(validity.is_oriented_manifold()).into()),

@@ -63,7 +63,8 @@ mod tests {
     fn volumes_are_read_in_every_way() {
         let scale = Scale { unit: Some(Unit::Millimetre), diagonal: 10.0, voxel: Some(0.5) };
         let volume = |text: &str| text.parse::<Volume>().expect(text).resolve(&scale).expect(text);
-        for (text, wanted) in [("8h3", 1.0), ("8h^3", 1.0), ("2.5", 2.5), ("3", 3.0), ("1cm3", 1000.0), ("2mm³", 2.0)] {
+        for (text, wanted) in [("8h3", 1.0), ("8h^3", 1.0), ("2.5", 2.5), ("3", 3.0), ("1cm3", 1000.0), ("2mm³", 2.0)]
+        {
             assert!((volume(text) - wanted).abs() < 1e-9 * wanted, "{text}: {}", volume(text));
         }
         for text in ["", "8h", "1mm", "1%", "1%3", "h3", "8x3"] {

@@ -9,6 +9,7 @@ pub type UnitName<'a> = Option<&'a str>;
 pub fn plural(n: usize, word: &str) -> String {
     let plural = match word {
         "body" => "bodies".to_string(),
+        "cavity" => "cavities".to_string(),
         "vertex" => "vertices".to_string(),
         "patch" => "patches".to_string(),
         word => format!("{word}s"),
@@ -32,6 +33,14 @@ pub fn length(x: f64, unit: UnitName<'_>) -> String {
 /// `97 x 80 x 104 mm`.
 pub fn size(size: [f64; 3], unit: UnitName<'_>) -> String {
     with_unit(&size.map(number).join(" x "), unit)
+}
+
+/// An area.
+pub fn area(x: f64, unit: UnitName<'_>) -> String {
+    match unit {
+        Some(unit) => format!("{} {unit}²", number(x)),
+        None => number(x),
+    }
 }
 
 /// A volume.

@@ -7,8 +7,8 @@ use rustc_hash::FxHashMap;
 use super::offset::MARGIN;
 use super::{Body, MorphologyError};
 use crate::lattice::{BRICK_VOXELS, Grid, Lattice, Slot};
-use crate::mesh::{Plane, TriMesh};
 use crate::mesh::edges::Union;
+use crate::mesh::{Plane, TriMesh};
 use crate::progress::Progress;
 use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
 

@@ -90,7 +90,8 @@ impl Search<'_> {
             self.field.bricks.active().par_iter().map(of_brick).collect::<Result<_, Stopped>>()?;
         let side = self.lattice.h / f64::from(self.along()) / 2.0;
         let mut taken = FxHashSet::default();
-        let mut fresh = |at: &At| taken.insert(((at.point / side).floor().as_ivec3(), (at.up * 1.5).round().as_ivec3()));
+        let mut fresh =
+            |at: &At| taken.insert(((at.point / side).floor().as_ivec3(), (at.up * 1.5).round().as_ivec3()));
         Ok(found.into_iter().flatten().filter(|at| fresh(at)).map(|at| at.point).collect())
     }
 

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::{Outcome, TriangleSource};
 use crate::io::{Colours, Rgba};
-use crate::mesh::TriMesh;
+use crate::mesh::{ClosestTree, TriMesh};
 
 /// What closes a hole in a mesh with colours.
 const CLOSED: Rgba = [200, 200, 200, 255];
@@ -36,6 +36,21 @@ pub fn carry_colours(outcome: &Outcome, operands: &[(&TriMesh, Option<&Colours>)
     };
     let all: Vec<[Rgba; 3]> = (0..outcome.mesh.triangles.len()).into_par_iter().map(corners).collect();
     Some(if by_face { Colours::Faces(all.iter().map(|c| c[0]).collect()) } else { Colours::Corners(all) })
+}
+
+/// The colours of `mesh`, a simpler surface of what `source` has `colours` for. Where these are by triangle, each triangle has
+/// that of the one it grew out of (`origins`); else each corner has that of the nearest place.
+pub fn carry_to_simpler(mesh: &TriMesh, origins: &[u32], source: &TriMesh, colours: &Colours) -> Colours {
+    if matches!(colours, Colours::Faces(_)) {
+        return Colours::Faces(origins.iter().map(|&t| colours.corners(source, t as usize)[0]).collect());
+    }
+    let tree = ClosestTree::of_mesh(source);
+    let at = |p: glam::DVec3| {
+        let nearest = tree.nearest(p).map_or(0, |closest| closest.id as usize);
+        colours.at(source, nearest, weights(source.corners(nearest), p))
+    };
+    let at_vertices: Vec<Rgba> = mesh.positions.par_iter().map(|&p| at(p)).collect();
+    Colours::Vertices(at_vertices)
 }
 
 /// Barycentric weights of the point of a triangle's plane under `p`, none negative.

@@ -3,6 +3,7 @@
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
+use super::kind::counted;
 use super::prepare::Soup;
 use super::{Error, Outcome, Report, Topology, TriangleSource};
 use crate::ldi::Operands;
@@ -70,11 +71,11 @@ pub(super) fn without_made_crumbs(mesh: &mut TriMesh, own: &mut Vec<Option<u32>>
 }
 
 /// The outcome without closed surfaces that enclose less than `least`, cubic model units: bodies are gone, voids are filled. Besides,
-/// the numbers that its triangles had.
+/// the numbers that its triangles had. `operands`: those that its sources name; without them no triangle counts as kept.
 ///
 /// # Errors
 /// [`Error::NothingEnclosed`] when all enclose less.
-pub fn drop_smaller(mut outcome: Outcome, least: f64) -> Result<(Outcome, Vec<usize>), Error> {
+pub fn drop_smaller(mut outcome: Outcome, operands: &[TriMesh], least: f64) -> Result<(Outcome, Vec<usize>), Error> {
     let found = shells_of(&outcome.mesh);
     let stays: Vec<bool> = found.list.iter().map(|shell| shell.volume.abs() >= least).collect();
     if !stays.contains(&true) {
@@ -87,7 +88,7 @@ pub fn drop_smaller(mut outcome: Outcome, least: f64) -> Result<(Outcome, Vec<us
     }
     let left = (0..found.of.len()).filter(|&t| stays[found.of[t] as usize]).collect();
     outcome.report.smaller = sweep(&mut outcome, &found, stays);
-    Ok((outcome, left))
+    Ok((counted(outcome, operands), left))
 }
 
 fn shells_of(mesh: &TriMesh) -> Shells {

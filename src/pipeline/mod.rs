@@ -8,6 +8,7 @@ mod crumbs;
 mod distance;
 mod field;
 mod frame;
+mod hollow;
 mod kind;
 mod morphology;
 mod order;
@@ -27,7 +28,8 @@ mod topology;
 pub use apart::StandingReport;
 pub use backend::{Backend, BackendReport};
 pub use canals::{CanalOptions, CanalOutcome, CanalReport, Remove, canals};
-pub use colours::{carry_colours, classes};
+pub use colours::{carry_colours, carry_to_simpler, classes};
+pub use crumbs::{Dropped, drop_smaller};
 pub use distance::{
     DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, distance,
     plan_distance,
@@ -36,13 +38,13 @@ pub use field::{
     Built, FieldBand, FieldBuilder, FieldReport, Operand, OperandReport, field_grid, field_spacing, field_surface,
     field_values,
 };
-pub use crumbs::{Dropped, drop_smaller};
+pub use hollow::{Drain, DrainReport, HollowOptions, HollowReport, hollow};
 pub use kind::{TriangleCounts, TriangleKind, kinds};
 pub use morphology::{MorphologyOptions, MorphologyReport, morphology};
-pub use plan::{plan, plan_canals, plan_morphology, plan_thicken};
+pub use plan::{plan, plan_canals, plan_hollow, plan_morphology, plan_thicken};
 pub use prepare::MAX_RESOLUTION;
 pub use report::{LdiReport, Report, StageTime, ThinRegion, ThinReport};
-pub use textures::{carry_texture, classes_of};
+pub use textures::{carry_texture, carry_texture_to_simpler, classes_of};
 pub use thicken::{SheetSide, ThickenOptions, ThickenReport, thicken};
 pub use thickness::{LengthsReport, ThicknessReport, thickness};
 pub use topology::{LostBody, Topology, TopologyReport};
@@ -243,6 +245,12 @@ pub enum Error {
         number: u32,
         /// Canals found.
         count: u32,
+    },
+    /// A drain that leads nowhere.
+    #[error("{reason}")]
+    Drain {
+        /// One sentence: which, where, and why.
+        reason: String,
     },
     /// The graphics processor was asked for and cannot do it.
     #[error("{reason}")]

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::apart::Apart;
 use super::frame::Frame;
 use super::survey::Survey;
-use super::{CanalOptions, Error, MorphologyOptions, Options, Plan, ThickenOptions, VoxelSize, prepare};
+use super::{CanalOptions, Error, HollowOptions, MorphologyOptions, Options, Plan, ThickenOptions, VoxelSize, prepare};
 use crate::lattice::Lattice;
 use crate::ldi::{Expression, MAX_CROSSINGS, MAX_TRIANGLES};
 use crate::mesh::TriMesh;
@@ -107,6 +107,12 @@ pub fn plan(operands: &[TriMesh], options: &Options) -> Result<Plan, Error> {
 pub fn plan_morphology(input: &TriMesh, options: &MorphologyOptions) -> Result<Plan, Error> {
     let offsets =
         Offsets { count: options.operation.offsets(), radius: super::morphology::usable(options.radius)?, thin: false };
+    plan_with(std::slice::from_ref(input), &options.solid, offsets)
+}
+
+/// What [`super::hollow`] would cost.
+pub fn plan_hollow(input: &TriMesh, options: &HollowOptions) -> Result<Plan, Error> {
+    let offsets = Offsets { count: 1, radius: super::morphology::usable(options.wall)?, thin: false };
     plan_with(std::slice::from_ref(input), &options.solid, offsets)
 }
 

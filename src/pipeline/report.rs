@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::apart::Apart;
 use super::stages::Stages;
 use super::{
-    BackendReport, CanalReport, Dropped, MorphologyReport, Outcome, StandingReport, ThickenReport, TopologyReport,
-    TriangleCounts, solid, topology,
+    BackendReport, CanalReport, Dropped, HollowReport, MorphologyReport, Outcome, StandingReport, ThickenReport,
+    TopologyReport, TriangleCounts, solid, topology,
 };
 
 use crate::fit::FitReport;
@@ -38,6 +38,8 @@ pub struct Report {
     pub fit: Option<FitReport>,
     /// Dilation, erosion, closing or opening; `None` without.
     pub morphology: Option<MorphologyReport>,
+    /// The cavity and its drains; `None` where none was to be made.
+    pub hollow: Option<HollowReport>,
     /// Walls that were too thin; `None` where none were looked for.
     pub thicken: Option<ThickenReport>,
     /// Canals that were listed; `None` where none were looked for.

@@ -3,8 +3,8 @@
 use glam::IVec3;
 
 use super::{Error, LdiReport, Report, ThinRegion, ThinReport};
-use crate::digits;
 use crate::contour::{Crossing, Edge, NO_TRIANGLE};
+use crate::digits;
 use crate::fit::{NOT_KEPT, Surface};
 use crate::lattice::{Grid, Lattice};
 use crate::ldi::{Layers, Lengths, Spans, THIN, ThinPlace, edge_crossing, lengths, thin_places};

@@ -33,22 +33,41 @@ pub fn classes_of(mesh: &TriMesh, colours: Option<&Colours>, texture: Option<&Te
 /// one that is made anew has the coordinates of its corners projected onto the triangle that it lies on; and one that is made up those
 /// of the nearest triangle.
 pub fn carry_texture(outcome: &Outcome, operands: &[(&TriMesh, Option<&TextureMap>)]) -> Option<TextureMap> {
+    carried_to(&outcome.mesh, &outcome.sources, operands)
+}
+
+/// The textures of `mesh`, a simpler surface of what `source` has `texture` for, by the triangles that its own grew out of.
+pub fn carry_texture_to_simpler(
+    mesh: &TriMesh,
+    origins: &[u32],
+    source: &TriMesh,
+    texture: &TextureMap,
+) -> Option<TextureMap> {
+    let sources: Vec<TriangleSource> =
+        origins.iter().map(|&triangle| TriangleSource::Operand { operand: 0, triangle }).collect();
+    carried_to(mesh, &sources, &[(source, Some(texture))])
+}
+
+fn carried_to(
+    result: &TriMesh,
+    sources: &[TriangleSource],
+    operands: &[(&TriMesh, Option<&TextureMap>)],
+) -> Option<TextureMap> {
     let (mut whole, offsets) = joined(operands)?;
-    let nearest = Nearest::of(outcome, operands);
-    let source = |t: usize| match outcome.sources[t] {
+    let nearest = Nearest::of(sources, operands);
+    let source = |t: usize| match sources[t] {
         TriangleSource::Operand { operand, triangle } => Some((operand, triangle)),
-        TriangleSource::Closed => nearest.as_ref()?.to(outcome.mesh.corners(t)),
+        TriangleSource::Closed => nearest.as_ref()?.to(result.corners(t)),
     };
     let carried = |t: usize| {
         let Some((operand, triangle)) = source(t) else { return (None, None) };
         let Some(&(mesh, Some(texture))) = operands.get(operand as usize) else { return (None, None) };
         let own = texture.at(triangle as usize, whole.downward);
-        let own = own.map(|own| projected(outcome.mesh.corners(t), mesh.corners(triangle as usize), own));
+        let own = own.map(|own| projected(result.corners(t), mesh.corners(triangle as usize), own));
         let material = texture.material_of.get(triangle as usize).copied().flatten();
         (own, material.and_then(|material| offsets[operand as usize].get(material as usize).copied()))
     };
-    let all: Vec<(Option<TexCoords>, Option<u32>)> =
-        (0..outcome.mesh.triangles.len()).into_par_iter().map(carried).collect();
+    let all: Vec<(Option<TexCoords>, Option<u32>)> = (0..result.triangles.len()).into_par_iter().map(carried).collect();
     (whole.coordinates, whole.material_of) = all.into_iter().unzip();
     Some(whole)
 }
@@ -96,8 +115,8 @@ struct Nearest {
 
 impl Nearest {
     /// `None` where nothing is made up.
-    fn of(outcome: &Outcome, operands: &[(&TriMesh, Option<&TextureMap>)]) -> Option<Self> {
-        outcome.sources.contains(&TriangleSource::Closed).then(|| {
+    fn of(sources: &[TriangleSource], operands: &[(&TriMesh, Option<&TextureMap>)]) -> Option<Self> {
+        sources.contains(&TriangleSource::Closed).then(|| {
             let names: Vec<(u32, u32)> = (0..)
                 .zip(operands)
                 .flat_map(|(operand, (mesh, _))| (0..mesh.triangles.len() as u32).map(move |t| (operand, t)))

@@ -5,11 +5,13 @@
 //! shell needs no ray, no vote and no voxel: [`standing`] finds the shells that stay as they are, and only the
 //! others go on to the lattice.
 
+mod bodies;
 mod boxes;
 mod contacts;
 mod standing;
 mod winding;
 
+pub use bodies::bodies;
 pub use contacts::{Contacts, contacts};
 pub use standing::{Fate, StandingOptions, standing};
 

@@ -13,8 +13,8 @@ use super::distance::DistanceOutcome;
 use super::frame::Frame;
 use super::morphology::volume;
 use super::{
-    DistanceReport, Dropped, Error, Options, Outcome, Report, TriangleCounts, TriangleSource, VoxelSize, prepare, refine,
-    stages,
+    DistanceReport, Dropped, Error, Options, Outcome, Report, TriangleCounts, TriangleSource, VoxelSize, prepare,
+    refine, stages,
 };
 use crate::field::filter::FilterError;
 use crate::field::{Extent, Field, FillError, FillOptions, LevelError, Shared, fill, level};
