@@ -110,6 +110,11 @@ impl Apart {
         self.shell_of[operand as usize].get(triangle as usize).copied().flatten()
     }
 
+    /// How many triangles touch others.
+    pub(super) fn touching(&self) -> usize {
+        self.contacts.touched.iter().filter(|touched| **touched).count()
+    }
+
     /// How many places there are where triangles touch others: each can make a tunnel.
     pub(super) fn crossings(&self) -> usize {
         self.crossings

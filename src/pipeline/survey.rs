@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::mesh::TriMesh;
 use crate::mesh::weld::welded_triangles;
@@ -13,11 +14,16 @@ const BEND_REACH: f64 = 0.15;
 /// The cosine of the angle from which on neighbours do not lie in one plane.
 const STRAIGHT: f64 = 0.9999;
 
+/// A rim is flat when its vertices lie no farther from its plane than this part of the root of its area.
+const PLANE: f64 = 1e-3;
+
 /// What was found, square model units where it says no other.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Survey {
     /// What closes the holes: for each rim the area that it encloses.
     pub lids: f64,
+    /// The part of it that lies in no plane: flat lids take few triangles.
+    pub curved_lids: f64,
     /// For each triangle with an edge that bends its area, and the length of these edges, model units.
     bends: Vec<(f64, f64)>,
 }
@@ -50,13 +56,15 @@ impl Survey {
             }
         }
         let bends = bent.iter().zip(&vectors).filter(|(length, _)| **length > 0.0);
-        Self { lids: rims.area(at), bends: bends.map(|(&length, vector)| (vector.length(), length)).collect() }
+        let (lids, curved_lids) = rims.areas(at);
+        Self { lids, curved_lids, bends: bends.map(|(&length, vector)| (vector.length(), length)).collect() }
     }
 
     /// Of several.
     pub(super) fn of_all(meshes: &[TriMesh]) -> Self {
         meshes.iter().map(Self::of).fold(Self::default(), |mut all, mut one| {
             all.lids += one.lids;
+            all.curved_lids += one.curved_lids;
             all.bends.append(&mut one.bends);
             all
         })
@@ -105,19 +113,32 @@ impl Rims {
         self.edges.push(if side.forwards { [a, b] } else { [b, a] });
     }
 
-    /// The sizes of the rims' area vectors, added up.
-    fn area(mut self, at: impl Fn(u32) -> DVec3) -> f64 {
-        let mut vectors: rustc_hash::FxHashMap<u32, DVec3> = rustc_hash::FxHashMap::default();
-        for [a, b] in std::mem::take(&mut self.edges) {
+    /// The sizes of the rims' area vectors, added up: of all, and of those that lie in no plane.
+    fn areas(mut self, at: impl Fn(u32) -> DVec3) -> (f64, f64) {
+        let mut vectors: FxHashMap<u32, DVec3> = FxHashMap::default();
+        let edges = std::mem::take(&mut self.edges);
+        for &[a, b] in &edges {
             let root = self.root(a);
             // Seen from a vertex of the rim itself, so that far from the origin nothing is lost.
             let from = at(root);
             *vectors.entry(root).or_default() += (at(a) - from).cross(at(b) - from) / 2.0;
         }
-        let mut sizes: Vec<f64> = vectors.values().map(|vector| vector.length()).collect();
-        // The order of a hash table must not show, not even in the last bit.
-        sizes.sort_unstable_by(f64::total_cmp);
-        sizes.iter().sum()
+        let mut curved: FxHashSet<u32> = FxHashSet::default();
+        for [a, _] in edges {
+            let root = self.root(a);
+            let vector = vectors[&root];
+            if (at(a) - at(root)).dot(vector.normalize_or_zero()).abs() > PLANE * vector.length().sqrt() {
+                curved.insert(root);
+            }
+        }
+        let sum = |keep: &dyn Fn(&u32) -> bool| {
+            let kept = vectors.iter().filter(|(root, _)| keep(root));
+            let mut sizes: Vec<f64> = kept.map(|(_, vector)| vector.length()).collect();
+            // The order of a hash table must not show, not even in the last bit.
+            sizes.sort_unstable_by(f64::total_cmp);
+            sizes.iter().sum()
+        };
+        (sum(&|_| true), sum(&|root| curved.contains(root)))
     }
 }
 
@@ -146,9 +167,11 @@ mod tests {
             triangles: (0..10).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
         };
         assert!((Survey::of(&soup).lids - 15.0).abs() < 1e-9);
+        assert_eq!(Survey::of(&soup).curved_lids, 0.0);
         mesh.triangles.drain(0..2);
         // With the one beside it, 2 by 3, both are one hole, which is closed by less than both sides.
-        assert!((Survey::of(&mesh).lids - 15f64.hypot(6.0)).abs() < 1e-9);
+        let both = Survey::of(&mesh);
+        assert!((both.lids - 15f64.hypot(6.0)).abs() < 1e-9 && both.curved_lids == both.lids);
     }
 
     #[test]
