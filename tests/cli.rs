@@ -4,6 +4,8 @@ mod common;
 
 #[path = "cli/compare.rs"]
 mod compare;
+#[path = "cli/documents.rs"]
+mod documents;
 #[path = "cli/faults.rs"]
 mod faults;
 #[path = "cli/fields.rs"]
