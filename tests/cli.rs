@@ -18,6 +18,8 @@ mod slices;
 mod solids;
 #[path = "cli/stops.rs"]
 mod stops;
+#[path = "cli/stumbles.rs"]
+mod stumbles;
 #[path = "cli/testdata.rs"]
 mod testdata;
 #[path = "cli/usage.rs"]

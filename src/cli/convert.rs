@@ -49,7 +49,11 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
             let after = state(&read.mesh, session)?;
             let keeps = args.keeping.keep_partial || args.writing.force;
             match is_mostly_lost(&before, &after) && !keeps {
-                true => Err(keep::withheld(&losses(&before, &after), Some(&args.output), "obj, ply, off and 3mf keep all digits")),
+                true => Err(keep::withheld(
+                    &losses(&before, &after),
+                    Some(&args.output),
+                    "obj, ply, off and 3mf keep all digits",
+                )),
                 false => Ok(after),
             }
         })

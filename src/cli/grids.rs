@@ -105,7 +105,10 @@ fn rows(grid: &GridInput, found: &GridEntry, unit: UnitName<'_>) -> Vec<Row> {
         rows.push(("band", format!("values are cut off at ± {}", words::length(band, unit))));
     }
     if (found.stored as usize) < all {
-        rows.push(("stored", format!("{} one by one, the rest in boxes", words::plural(found.stored as usize, "voxel"))));
+        rows.push((
+            "stored",
+            format!("{} one by one, the rest in boxes", words::plural(found.stored as usize, "voxel")),
+        ));
     }
     let inside = match found.inside {
         0 => "no value is below zero, so there is no inside".into(),
@@ -130,8 +133,10 @@ fn target(args: &ConvertArgs, label: &str) -> Result<GridFormat, Failure> {
     match args.writing.out_format.or(named) {
         Some(AnyFormat::Grid(format)) => Ok(format),
         Some(AnyFormat::Mesh(format)) => Err(makes_a_mesh(format)),
-        None if input::is_stream(&args.output) => Err(Failure::usage("standard output has no name that tells its format")
-            .hint("--out-format says it, for example --out-format nrrd")),
+        None if input::is_stream(&args.output) => {
+            Err(Failure::usage("standard output has no name that tells its format")
+                .hint("--out-format says it, for example --out-format nrrd"))
+        }
         None => Err(Failure::usage(format!("the name {} does not tell its format", args.output.display()))
             .hint("end it in .vti, .nrrd, .npy or .vdb, or give --out-format")),
     }
@@ -156,7 +161,9 @@ pub fn convert(
     let file = &grid.file;
     check_room(file, format)?;
     if !format.says_where() {
-        report.warnings.push(format!("{format} has no place for origin, spacing and unit; `inspect --json` of the input has them"));
+        report.warnings.push(format!(
+            "{format} has no place for origin, spacing and unit; `inspect --json` of the input has them"
+        ));
     }
     let plane = |z: usize, values: &mut Vec<f32>| file.plane(z, values);
     let samples = DistanceSamples {
@@ -173,7 +180,7 @@ pub fn convert(
         output::write_grid(&args.output, &samples, format, session)
     })?;
     session.clear_bar();
-    let name = unit.map_or(String::new(), |unit| format!(", in {unit}"));
+    let name = unit.filter(|_| format.says_where()).map_or(String::new(), |unit| format!(", in {unit}"));
     let [x, y, z] = file.dims;
     session.say(&format!("{}: {x} x {y} x {z} voxels, as {format}{name}, {}", entry.path, words::bytes(entry.bytes)));
     report.output = Some(entry);

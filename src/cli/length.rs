@@ -140,7 +140,8 @@ impl FromStr for Length {
     type Err = QuantityError;
 
     fn from_str(text: &str) -> Result<Self, QuantityError> {
-        let is_a_length = |text: &str| split(text).is_some_and(|(_, s)| matches!(s, "" | "h" | "%") || s.parse::<Unit>().is_ok());
+        let is_a_length =
+            |text: &str| split(text).is_some_and(|(_, s)| matches!(s, "" | "h" | "%") || s.parse::<Unit>().is_ok());
         let comma = text.contains(',') && is_a_length(&text.replace(',', "."));
         let wanted = if comma { A_POINT } else { A_LENGTH };
         let malformed = || QuantityError::Malformed { text: text.into(), wanted };

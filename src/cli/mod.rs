@@ -62,7 +62,9 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version also come this way; there is nobody to tell if printing fails.
-            match misuse::explain(&error, &std::env::args_os().skip(1).collect::<Vec<_>>()).filter(|_| error.use_stderr()) {
+            match misuse::explain(&error, &std::env::args_os().skip(1).collect::<Vec<_>>())
+                .filter(|_| error.use_stderr())
+            {
                 Some(failure) => print_failure(&failure),
                 None => drop(error.print()),
             }
@@ -214,10 +216,12 @@ impl<'a> Job<'a> {
         if self.plan {
             let files: Vec<Made> = std::mem::take(&mut self.made).into_iter().chain(report).collect();
             files::check(&self.inputs, &files)?;
+            report::check_name(self.common)?;
             return files::prepare(files.iter().filter(|file| file.flag == "--report"));
         }
         self.made.extend(report);
         files::check(&self.inputs, &self.made)?;
+        report::check_name(self.common)?;
         files::prepare(&self.made)
     }
 }

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::frame::Frame;
 use super::plan::{Offsets, check_offsets};
 use super::{Error, Options, Outcome, TriangleSource, boolean, prepare, refine, stages};
+use crate::digits;
 use crate::fit::{Facets, FitOptions, FitReport, Surface, Wanted, fit};
 use crate::lattice::Lattice;
 use crate::ldi::{Evidence, Expression};
@@ -66,7 +67,7 @@ pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progr
 
 /// A radius, or why it is none.
 pub(super) fn usable(radius: f64) -> Result<f64, Error> {
-    let reason = || format!("a radius of {radius} cannot be used; it must be a positive length");
+    let reason = || format!("a radius of {} cannot be used; it must be above zero", digits::number(radius));
     if radius > 0.0 && radius.is_finite() { Ok(radius) } else { Err(Error::VoxelSize { reason: reason() }) }
 }
 
@@ -157,7 +158,7 @@ impl Run<'_> {
     ) -> Result<Made, Error> {
         if offset.contour.mesh.triangles.is_empty() {
             let reason = if level < 0.0 && self.options.operation != Operation::Close {
-                format!("nothing is left: the solid is nowhere thicker than {}", 2.0 * level.abs())
+                format!("nothing is left: the solid is nowhere thicker than {}", digits::number(2.0 * level.abs()))
             } else {
                 "nothing is left".into()
             };

@@ -78,9 +78,12 @@ pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -
     if least < LEAST_VOXELS * h {
         let (fits, finest) = (least / LEAST_VOXELS, prepare::finest(&bounds));
         let [walls, voxel] = [least, h].map(digits::number);
-        let possible = if fits < finest {
-            format!("{}, which is finer than is possible here: walls of at least {} are", digits::number(fits),
-                digits::rounded_up(LEAST_VOXELS * finest))
+        let possible = if fits < prepare::TYPED * finest {
+            format!(
+                "{}, which is finer than is possible here: walls of at least {} are",
+                digits::number(fits),
+                digits::rounded_up(LEAST_VOXELS * finest)
+            )
         } else {
             format!("{}, and it is {voxel}", digits::rounded_down(fits))
         };

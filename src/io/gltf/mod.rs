@@ -154,6 +154,7 @@ struct Note {
 /// Metres, as the specification says, unless an earlier version of this program has noted otherwise.
 fn unit(root: &Root) -> Unit {
     let own = root.asset.generator.as_deref() == Some(env!("CARGO_PKG_NAME"));
-    let note = root.asset.extras.as_ref().filter(|_| own).and_then(|extras| serde_json::from_str::<Note>(extras.get()).ok());
+    let note =
+        root.asset.extras.as_ref().filter(|_| own).and_then(|extras| serde_json::from_str::<Note>(extras.get()).ok());
     note.and_then(|note| note.unit.parse().ok()).unwrap_or(Unit::Metre)
 }

@@ -339,7 +339,8 @@ mod tests {
         let mut all = Vec::new();
         (0..file.dims[2]).for_each(|z| file.plane(z, &mut all));
         let [width, height, depth] = file.dims.map(|count| count as i32);
-        let voxels = (0..depth).flat_map(|z| (0..height).flat_map(move |y| (0..width).map(move |x| IVec3::new(x, y, z))));
+        let voxels =
+            (0..depth).flat_map(|z| (0..height).flat_map(move |y| (0..width).map(move |x| IVec3::new(x, y, z))));
         let expected: Vec<f32> = voxels.map(|voxel| file.at(voxel).expect("in the lattice")).collect();
         assert_eq!(all, expected);
         let dense = GridFile { values: GridValues::Dense(all.clone()), ..file.clone() };
