@@ -20,7 +20,10 @@ pub(crate) fn number(x: f64) -> String {
     }
     let magnitude = x.abs().log10().floor();
     if !(-5.0..9.0).contains(&magnitude) {
-        return format!("{x:.3e}");
+        let text = format!("{x:.3e}");
+        let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        let digits = if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits };
+        return format!("{digits}e{exponent}");
     }
     let decimals = (3.0 - magnitude).max(0.0) as usize;
     let text = format!("{x:.decimals$}");

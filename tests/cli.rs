@@ -24,6 +24,8 @@ mod slices;
 mod solids;
 #[path = "cli/stops.rs"]
 mod stops;
+#[path = "cli/stumbles.rs"]
+mod stumbles;
 #[path = "cli/testdata.rs"]
 mod testdata;
 #[path = "cli/textures.rs"]

@@ -94,7 +94,7 @@ def run(program, words, limit):
 def measure(program, way, words, count, mesh, resolution, folder, limit):
     inputs = [mesh] if count == 1 else [mesh, moved(program, mesh, folder)]
     out = folder / ("out.nrrd" if words[0] == "sdf" else "out.stl")
-    output = [] if words[0] == "canals" else ["-o", out]
+    output = {"canals": [], "sdf": ["-o", out]}.get(words[0], ["-o", out, "--keep-partial"])
     command = [words[0], *inputs, *words[1:], "--resolution", str(resolution)]
     planned = run(program, [*command, "--plan"], limit)
     done = run(program, [*command, *output], limit)

@@ -27,7 +27,7 @@ Exit status:
   0    done, and verified on the written file
   1    internal error
   2    wrong usage
-  3    done, but a promise or a stated limit does not hold
+  3    a promise or a stated limit does not hold; a result that is mostly lost is written only with --keep-partial
   4    unreadable or empty input, one that the verb cannot take, or nothing is enclosed
   5    more memory or threads needed than can be had, or than --max-memory allows
   6    --timeout has passed

@@ -93,8 +93,13 @@ fn stages_of_field(frames: usize) -> Vec<(&'static str, f64)> {
     const FRAME: [(&str, f64); 5] =
         [("field", 40.0), ("collapse", 10.0), ("fit", 35.0), ("write", 3.0), ("verify", 7.0)];
     let frames = (0..frames.max(1)).flat_map(|_| FRAME);
-    [("read", 2.0), ("examine", 3.0)].into_iter().chain(frames).collect()
+    // Broken operands are repaired first.
+    let (repaired, _) = SOLID.split_at(SOLID.len() - 2);
+    repaired.iter().map(|&(name, weight)| (name, 0.4 * weight)).chain(frames).collect()
 }
+
+/// Stages that are never left out: what is found beyond one that has not begun belongs to something that comes again.
+const GATES: [&str; 6] = ["field", "offset", "first offset", "second offset", "thin walls", "distance"];
 
 /// A run whose stages are about these takes so long, seconds, until it has shown how fast it is.
 const GUESS: f64 = 20.0;
@@ -151,7 +156,9 @@ impl Course {
         let here = self.position(now);
         self.words = in_words(stage);
         let next = if self.begun { self.at + 1 } else { self.at };
-        let coming = self.stages.iter().skip(next).position(|(name, ..)| *name == stage).map(|n| next + n);
+        let ahead = self.stages.iter().skip(next);
+        let wall = ahead.clone().position(|(name, ..)| GATES.contains(name)).unwrap_or(usize::MAX);
+        let coming = ahead.clone().position(|(name, ..)| *name == stage).filter(|&n| n <= wall).map(|n| next + n);
         if let Some((_, begin, end)) = coming.map(|n| self.stages[n]) {
             (self.at, self.begun) = (coming.unwrap_or(self.at), true);
             (self.from, self.to) = (here.max(begin), end.max(here));
@@ -172,7 +179,7 @@ impl Course {
         self.from + (self.to - self.from) * self.within(now)
     }
 
-    /// The share of the stage that is done: as it says, or else by the speed of the run so far, slower and slower.
+    /// The share of the stage that is done: as it says, or else by the speed of the run so far, and slower when it takes longer.
     fn within(&self, now: Duration) -> f64 {
         if let Some(share) = self.share {
             return share;
@@ -180,7 +187,10 @@ impl Course {
         let spent = now.saturating_sub(self.since).as_secs_f64();
         let whole = if self.from > TELLING { self.since.as_secs_f64() / self.from } else { GUESS };
         let expected = (whole * (self.to - self.from)).max(1e-3);
-        1.0 - (-spent / expected).exp()
+        match spent / expected {
+            early if early < 1.0 => 0.8 * early,
+            late => 1.0 - 0.2 / late,
+        }
     }
 
     /// Whole percents, below 100 as long as the run goes on.
@@ -279,6 +289,21 @@ mod tests {
         let mut course = Course::of_frames(3);
         (0..3).for_each(|n| course.begin("field", Duration::from_secs(n)));
         assert!(course.position(Duration::from_secs(2)) > 0.6, "the third of three frames has begun");
+    }
+
+    #[test]
+    fn what_comes_again_does_not_skip_what_is_to_come() {
+        let again = ["orient", "shells", "ldi", "spans", "vote", "sdf", "contour", "collapse", "fit"];
+        for (verb, gate) in [("field", "field"), ("close", "first offset"), ("thicken", "thin walls")] {
+            let mut course = Course::of(verb);
+            // Two operands are repaired, or voxels are halved.
+            let stages = again.iter().chain(&again).enumerate();
+            stages.for_each(|(n, stage)| course.begin(stage, Duration::from_secs(n as u64)));
+            let before = course.position(Duration::from_secs(18));
+            course.begin(gate, Duration::from_secs(18));
+            course.share(1.0, Duration::from_secs(18));
+            assert!(course.position(Duration::from_secs(18)) > before + 0.1, "{verb}");
+        }
     }
 
     /// What a listener hears of real runs, as a course shows it.

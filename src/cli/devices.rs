@@ -75,7 +75,7 @@ mod with_gpu {
             }
             (None, Some(name)) => format!("{name} is not known to be faster than the main processor"),
             (None, None) if adapters.is_empty() => format!("no adapter found; {INSTALL}"),
-            (None, None) => "none of the adapters can make layered depth images".into(),
+            (None, None) => "none of the adapters can find the crossings of rays".into(),
         };
         DeviceReport { built: true, adapters, auto, gpu, why }
     }
@@ -107,9 +107,9 @@ mod with_gpu {
             AdapterKind::Other => "unknown",
         };
         let can: Vec<String> = [
-            (adapter.scatter, "scatter crossings"),
-            (adapter.peel, "peel layers"),
-            (adapter.timestamps, "time its passes"),
+            (adapter.scatter, "find all crossings of the rays at once"),
+            (adapter.peel, "find them layer by layer"),
+            (adapter.timestamps, "measure its own time"),
         ]
         .iter()
         .filter(|(can, _)| *can)

@@ -84,8 +84,8 @@ pub fn better(report: &RunReport, unit: UnitName<'_>) -> String {
     let finer = pipeline.and_then(|p| p.thin.voxel_that_keeps.filter(|keeps| *keeps < p.voxel));
     match finer {
         Some(voxel) => {
-            let voxel = words::with_unit(&words::rounded_up(voxel), unit).replace(' ', "");
-            format!("--voxel {voxel} would keep more of it")
+            let voxel = words::with_unit(&words::rounded_down(voxel), unit).replace(' ', "");
+            format!("--voxel {voxel} would keep 99 % of the walls")
         }
         None => "`meshwright inspect` says what is wrong with the input, and `render` shows it".into(),
     }

@@ -75,6 +75,9 @@ pub struct Failure {
     pub hint: Option<String>,
 }
 
+/// What to try where no voxel fits.
+pub const INPUTS_ALONE: &str = "the inputs alone need that much: a larger --max-memory, or a machine with more";
+
 impl Failure {
     /// A failure without a hint.
     pub fn new(exit: Exit, message: impl Into<String>) -> Self {
@@ -138,7 +141,7 @@ impl Failure {
                         "--voxel {} would fit",
                         words::with_unit(&words::rounded_up(*h), unit).replace(' ', "")
                     )),
-                    None => failure.hint("the inputs alone need that much: a larger --max-memory"),
+                    None => failure.hint(INPUTS_ALONE),
                 }
             }
             Error::MissingCanal { .. } => {

@@ -180,7 +180,7 @@ pub fn convert(
         output::write_grid(&args.output, &samples, format, session)
     })?;
     session.clear_bar();
-    let name = unit.map_or(String::new(), |unit| format!(", in {unit}"));
+    let name = unit.filter(|_| format.says_where()).map_or(String::new(), |unit| format!(", in {unit}"));
     let [x, y, z] = file.dims;
     session.say(&format!("{}: {x} x {y} x {z} voxels, as {format}{name}, {}", entry.path, words::bytes(entry.bytes)));
     report.output = Some(entry);

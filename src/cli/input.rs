@@ -226,10 +226,11 @@ pub fn bring_to(unit: Unit, inputs: &mut [Input], args: &InputArgs, notes: &mut 
 /// A line on an input in another unit than the rest.
 pub fn rescaled(label: &str, own: Unit, unit: Unit) -> String {
     let factor = words::factor(own.metres() / unit.metres());
+    let [own, unit] = [own, unit].map(words::several);
     format!("{label} is in {own}; it was rescaled to {unit} (times {factor})")
 }
 
 /// A line on an input without a unit beside others.
 pub fn without_unit(label: &str, unit: Unit) -> String {
-    format!("{label} carries no unit; its numbers are taken as {unit}")
+    format!("{label} carries no unit; its numbers are taken as {}", words::several(unit))
 }

@@ -122,7 +122,7 @@ fn thickness_rows(found: &ThicknessReport, unit: words::UnitName<'_>) -> Vec<sum
     };
     let mut rows = vec![("walls", described(&found.walls)), ("gaps", described(&found.gaps))];
     if let (Some(voxel), Some(resolution)) = (found.voxel_that_keeps, found.resolution_that_keeps) {
-        let voxel = words::with_unit(&words::rounded_down(voxel.max(found.finest)), unit);
+        let voxel = words::with_unit(&words::rounded_down(voxel), unit);
         let kept = format!("a voxel of {voxel} (--resolution {resolution}) puts two into 99 % of the walls and gaps");
         rows.push(("keeps", kept));
     } else if found.walls.count + found.gaps.count > 0 {
@@ -135,10 +135,7 @@ fn thickness_rows(found: &ThicknessReport, unit: words::UnitName<'_>) -> Vec<sum
         ));
     }
     if found.silent > 0.0 {
-        rows.push((
-            "silent",
-            format!("{:.1} % of the rays met an open surface and were not counted", 100.0 * found.silent),
-        ));
+        rows.push(("not counted", format!("{:.1} % of the rays, which met an open surface", 100.0 * found.silent)));
     }
     rows
 }

@@ -10,7 +10,7 @@ use super::input::is_stream;
 /// Whether a result that is mostly lost is written all the same.
 #[derive(Debug, Clone, Copy, Args)]
 pub struct KeepArgs {
-    /// Write the result also when the program finds that most of the shape is lost (exit status 3)
+    /// Write the result also when most of the shape is lost (exit status 3); --force does so, too
     #[arg(long)]
     pub keep_partial: bool,
 }

@@ -19,7 +19,7 @@ pub fn lost(report: &RunReport) -> Vec<String> {
         let (thin, vote) = (&pipeline.thin, &pipeline.vote);
         if share(thin.lost_spans, thin.spans) > TOO_MANY_LOST && !pipeline.kept_all() {
             sentences.push(format!(
-                "{} of the walls are so thin that they pass between voxels: the voxel is too large for this shape",
+                "{} of the walls are so thin that they fall between the voxels and are lost",
                 words::percent(thin.lost_spans, thin.spans)
             ));
         }

@@ -19,8 +19,10 @@ pub fn explain(error: &clap::Error, arguments: &[OsString]) -> Option<Failure> {
     let command = Cli::command();
     let words: Vec<String> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let Some(verb) = words.iter().find_map(|word| command.find_subcommand(word)) else {
-        let file = words.iter().filter(|word| !word.starts_with('-')).find(|word| is_a_mesh(word))?;
-        return Some(no_verb(file));
+        let after_a_flag = |n: usize| n > 0 && words[n - 1].starts_with('-');
+        let mut files = (0..words.len()).filter(|&n| !words[n].starts_with('-') && is_a_mesh(&words[n]));
+        let file = files.clone().find(|&n| !after_a_flag(n)).or_else(|| files.next())?;
+        return Some(no_verb(&words[file]));
     };
     match error.kind() {
         ErrorKind::UnknownArgument => {
@@ -103,7 +105,7 @@ mod tests {
     fn what_to_type_is_said() {
         for (line, words) in [
             ("part.stl", "meshwright repair part.stl -o part_repaired.stl"),
-            ("-o fixed.stl sub/part.3mf", "meshwright inspect fixed.stl"),
+            ("-o fixed.stl sub/part.3mf", "meshwright repair sub/part.3mf -o sub/part_repaired.3mf"),
             ("repair a.stl b.stl -o c.stl", "meshwright union"),
             ("fix a.stl b.stl c.stl -o d.stl", "`repair` takes one file, and b.stl is one more"),
             ("repair a.stl b.stl", "-o b.stl"),

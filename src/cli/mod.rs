@@ -235,10 +235,12 @@ impl<'a> Job<'a> {
         if self.plan {
             let files: Vec<Made> = std::mem::take(&mut self.made).into_iter().chain(report).collect();
             files::check(&self.inputs, &files)?;
+            report::check_name(self.common)?;
             return files::prepare(files.iter().filter(|file| file.flag == "--report"));
         }
         self.made.extend(report);
         files::check(&self.inputs, &self.made)?;
+        report::check_name(self.common)?;
         files::prepare(&self.made)
     }
 }

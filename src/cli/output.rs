@@ -64,7 +64,7 @@ impl Target {
             )),
             (Format::Glb | Format::Gltf, Some(unit)) if unit != Unit::Metre => {
                 let factor = words::factor(self.options.factor());
-                Some(format!("{format} is in metres: lengths in {unit} were written times {factor}"))
+                Some(format!("{format} is in metres: lengths in {} were written times {factor}", words::several(unit)))
             }
             (Format::ThreeMf, None) => Some(
                 "3MF states a unit, and that of the model is not known: its numbers were written as they are and read as millimetres; \
@@ -72,7 +72,8 @@ impl Target {
                     .into(),
             ),
             (Format::Stl | Format::Obj | Format::Ply | Format::Off, Some(unit)) if unit != Unit::Millimetre => Some(format!(
-                "{format} has no place for a unit: its numbers are in {unit}, and most programs will take them for millimetres"
+                "{format} has no place for a unit: its numbers are {}, and most programs will take them for millimetres",
+                words::several(unit)
             )),
             _ => None,
         }

@@ -237,7 +237,11 @@ pub fn check_streams<'a>(common: &CommonArgs, made: impl IntoIterator<Item = &'a
         Some(report) if is_stream(report) => {
             Err(Failure::usage("--report wants a file").hint("--json writes the report to standard output"))
         }
-        Some(report) => super::output::check_extension(report, "json"),
-        None => Ok(()),
+        _ => Ok(()),
     }
+}
+
+/// Refuses a report that is named as something else.
+pub fn check_name(common: &CommonArgs) -> Result<(), Failure> {
+    common.report.as_ref().map_or(Ok(()), |report| super::output::check_extension(report, "json"))
 }

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::args::SdfArgs;
 use super::backend;
 use super::choices::SignChoice;
-use super::exit::{Asked, Exit, Failure};
+use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
 use super::input::{self, Input, is_stream};
 use super::length::{BandChoice, Scale};
 use super::report::{OutputEntry, PlanEntry, RunReport};
@@ -43,7 +43,7 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
     };
     report.warnings.extend(doubts(&options, &validity, format));
     let outcome = pipeline::distance(&input.loaded.mesh, &options, &session.progress)
-        .map_err(|e| failure(&e, input, unit, args))?;
+        .map_err(|e| failure(&e, input, &options, unit, args))?;
     report.stages.extend(outcome.report.stages.iter().cloned());
     report.output = Some(write(path, &outcome, unit, format, session, report)?);
     let fallback = outcome.report.made_by.as_ref().and_then(|made_by| made_by.fallback.as_ref());
@@ -173,11 +173,26 @@ fn doubts(options: &DistanceOptions, validity: &Validity, format: GridFormat) ->
     sentences
 }
 
-fn failure(error: &pipeline::Error, input: &Input, unit: Option<Unit>, args: &SdfArgs) -> Failure {
+/// What to try when more memory would be needed than `allowed`.
+fn smaller(input: &Input, options: &DistanceOptions, allowed: u64) -> &'static str {
+    let coarsest = DistanceOptions { voxel: VoxelSize::Along(2), ..*options };
+    match pipeline::plan_distance(&input.loaded.mesh, &coarsest) {
+        Ok(plan) if plan.memory > allowed => INPUTS_ALONE,
+        _ => "a narrower --band, or a lower --resolution",
+    }
+}
+
+fn failure(
+    error: &pipeline::Error,
+    input: &Input,
+    options: &DistanceOptions,
+    unit: Option<Unit>,
+    args: &SdfArgs,
+) -> Failure {
     let unit = unit.map(|unit| unit.to_string());
     match error {
         pipeline::Error::Memory { needed, allowed, .. } => {
-            Failure::memory(*needed, *allowed, args.max_memory).hint("a narrower --band, or a lower --resolution")
+            Failure::memory(*needed, *allowed, args.max_memory).hint(smaller(input, options, *allowed))
         }
         _ => {
             let asked = Asked { voxel: args.voxel.is_some(), memory: args.max_memory };
@@ -194,7 +209,8 @@ fn plan(
     args: &SdfArgs,
     report: &mut RunReport,
 ) -> Result<Exit, Failure> {
-    let mut plan = pipeline::plan_distance(&input.loaded.mesh, options).map_err(|e| failure(&e, input, unit, args))?;
+    let mut plan =
+        pipeline::plan_distance(&input.loaded.mesh, options).map_err(|e| failure(&e, input, options, unit, args))?;
     if format == Some(GridFormat::Vdb) {
         plan.file = tree_bytes(&plan, options);
     }
@@ -205,7 +221,7 @@ fn plan(
     }
     match options.max_memory {
         Some(cap) if plan.memory > cap => {
-            Err(Failure::memory(plan.memory, cap, args.max_memory).hint("a narrower --band, or a lower --resolution"))
+            Err(Failure::memory(plan.memory, cap, args.max_memory).hint(smaller(input, options, cap)))
         }
         _ => Ok(Exit::Done),
     }

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::args::SolidArgs;
 use super::change::{self, Change, Changed};
-use super::exit::{Asked, Exit, Failure};
+use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
 use super::input::{self, Input};
 use super::length::{Scale, Simplify};
 use super::output::{Target, write_verified};
@@ -157,11 +157,11 @@ fn plan(
 ) -> Result<Exit, Failure> {
     let (args, unit) = (job.args, scale.unit);
     let meshes: Vec<TriMesh> = inputs.iter_mut().map(|input| std::mem::take(&mut input.loaded.mesh)).collect();
-    let plan = match job.change {
-        None => pipeline::plan(&meshes, options),
-        Some(change) => change.plan(&meshes[0], options, scale)?,
+    let planned = |options: &Options| match job.change {
+        None => Ok(pipeline::plan(&meshes, options)),
+        Some(change) => change.plan(&meshes[0], options, scale),
     };
-    let plan = plan.map_err(|e| failure(&e, &inputs, unit, args))?;
+    let plan = planned(options)?.map_err(|e| failure(&e, &inputs, unit, args))?;
     report.plan = Some(PlanEntry::Solid(plan));
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
@@ -170,7 +170,10 @@ fn plan(
     }
     match options.max_memory {
         Some(cap) if plan.memory > cap => {
-            Err(Failure::memory(plan.memory, cap, args.max_memory).hint("a lower --resolution"))
+            let coarsest = Options { voxel: VoxelSize::Along(2), ..options.clone() };
+            let alone = planned(&coarsest)?.is_ok_and(|plan| plan.memory > cap);
+            let hint = if alone { INPUTS_ALONE } else { "a lower --resolution, or a larger voxel" };
+            Err(Failure::memory(plan.memory, cap, args.max_memory).hint(hint))
         }
         _ => Ok(Exit::Done),
     }

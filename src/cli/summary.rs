@@ -131,14 +131,14 @@ fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
     add(sum(|o| o.flipped_patches), "patch", "turned over as a whole");
     if pipeline.ldi.silent_rays > 0 {
         let share = words::percent(pipeline.ldi.silent_rays, pipeline.ldi.rays);
-        parts.push(format!("{share} of the rays met a hole or a crack; others decided in their place"));
+        parts.push(format!("{share} of the test rays met a hole or a crack, where those in other directions decided"));
     }
     parts.extend(kept(pipeline));
     if let Some(fit) = pipeline.fit.as_ref().filter(|fit| fit.kept < fit.of) {
         let points = words::plural(fit.inserted + fit.moved, "point");
         let given_up = match fit.given_up {
             0 => String::new(),
-            n => format!("; {} left as the voxels have them", words::plural(n, "place")),
+            n => format!("; {} left rough, where no sharp edge could be fitted", words::plural(n, "place")),
         };
         parts.push(format!("{points} set on edges and corners{given_up}"));
     }
@@ -223,7 +223,7 @@ fn details(report: &RunReport, pipeline: &Report, unit: UnitName<'_>) -> Vec<Row
     rows.push((
         "rays",
         format!(
-            "{}, {} of them silent; {}, at most {} on one",
+            "{}, of which {} could not decide; {}, at most {} on one",
             words::count(pipeline.ldi.rays),
             words::count(pipeline.ldi.silent_rays),
             words::plural(pipeline.ldi.hits, "crossing"),
@@ -302,8 +302,8 @@ pub fn inspection(input: &Input, validity: &Validity, unit: Option<Unit>) -> Vec
         ("triangles", words::count(validity.triangles)),
         ("vertices", vertices),
         ("surfaces", words::count(validity.bodies)),
-        ("genus", validity.genus.map_or("(not a closed manifold)".into(), |genus| genus.to_string())),
-        ("area", words::area(validity.area, name)),
+        ("tunnels", validity.genus.map_or("not known: the surface is not closed".into(), |genus| genus.to_string())),
+        ("area", area),
         ("volume", words::volume(validity.volume, name)),
         ("closed", yes_no(validity.is_closed()).into()),
         ("oriented", yes_no(validity.is_oriented_manifold()).into()),

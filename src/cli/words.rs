@@ -1,6 +1,7 @@
 //! Numbers and quantities in words.
 
 pub(crate) use crate::digits::{count, factor, number, rounded_down, rounded_up};
+use crate::io::Unit;
 
 /// The name of the model's unit, where it has one.
 pub type UnitName<'a> = Option<&'a str>;
@@ -22,6 +23,18 @@ pub fn with_unit(number: &str, unit: UnitName<'_>) -> String {
     match unit {
         Some(unit) => format!("{number} {unit}"),
         None => number.to_string(),
+    }
+}
+
+/// Several of a unit: `inches`.
+pub fn several(unit: Unit) -> &'static str {
+    match unit {
+        Unit::Micrometre => "micrometres",
+        Unit::Millimetre => "millimetres",
+        Unit::Centimetre => "centimetres",
+        Unit::Inch => "inches",
+        Unit::Foot => "feet",
+        Unit::Metre => "metres",
     }
 }
 
@@ -71,7 +84,11 @@ pub fn seconds(s: f64) -> String {
 /// By how much something changed, in percent.
 pub fn percent_change(before: f64, after: f64) -> String {
     match before != 0.0 {
-        true => format!("{:+.3} %", 100.0 * (after / before - 1.0)),
+        true => match 100.0 * (after / before - 1.0) {
+            change if change.abs() < 1000.0 => format!("{change:+.3} %"),
+            change if change > 0.0 => format!("+{} %", number(change)),
+            change => format!("{} %", number(change)),
+        },
         false => "from nothing".into(),
     }
 }
@@ -109,8 +126,8 @@ mod tests {
             (1234.6, "1,235"),
             (-86412.3, "-86,412"),
             (0.00012346, "0.0001235"),
-            (1e38, "1.000e38"),
-            (2.5e-9, "2.500e-9"),
+            (1e38, "1e38"),
+            (2.5e-9, "2.5e-9"),
         ] {
             assert_eq!(number(x), text);
         }
@@ -139,5 +156,6 @@ mod tests {
         assert_eq!(list(&["a".into(), "b".into(), "c".into()]), "a, b and c");
         assert_eq!(seconds(0.5), "0.50 s");
         assert_eq!(seconds(125.0), "2:05 min");
+        assert_eq!([1.5, 475.0].map(|after| percent_change(1.0, after)), ["+50.000 %", "+47,400 %"]);
     }
 }

@@ -1,6 +1,7 @@
 //! A field over a lattice, where its values are near zero.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::IVec3;
 use rayon::prelude::*;
@@ -34,7 +35,7 @@ pub enum FillError {
     #[error(transparent)]
     Stopped(#[from] Stopped),
     /// More memory would be needed than allowed.
-    #[error("about {} MB would be needed and {} MB are allowed: a larger voxel, or a narrower band",
+    #[error("about {} MB would be needed and {} MB are allowed: use a larger voxel, or a narrower band",
         needed / 1_000_000, allowed / 1_000_000)]
     Memory {
         /// For the bricks found, bytes.
@@ -63,14 +64,24 @@ pub fn fill(
         return Err(FillError::Memory { needed, allowed });
     }
     let bricks = Arc::new(found.classified());
+    let (done, all) = (AtomicUsize::new(0), bricks.active().len());
     let values = bricks.active().par_iter().map(|&brick| {
         progress.check()?;
-        Ok(scope.brick(brick))
+        let values = scope.brick(brick);
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        if done.is_multiple_of(BETWEEN_SHARES) {
+            progress.share(FILLED * done as f32 / all as f32);
+        }
+        Ok(values)
     });
     let values = values.collect::<Result<Vec<_>, Stopped>>()?;
     let far = if scope.band.is_finite() { scope.band as f32 } else { f32::INFINITY };
     Ok(Grid { bricks, values, inside: -far, outside: far })
 }
+
+/// The values are about this share of what a stage does with them, and it is told after so many bricks.
+const FILLED: f32 = 0.6;
+const BETWEEN_SHARES: usize = 32;
 
 struct Scope<'a> {
     field: &'a dyn Field,

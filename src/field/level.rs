@@ -62,9 +62,11 @@ pub fn level(
     grid.values.par_iter_mut().flatten().for_each(|value| *value /= lattice.h as f32);
     (grid.inside, grid.outside) = (grid.inside / lattice.h as f32, grid.outside / lattice.h as f32);
     let passages = Passages::of(field, &grid, lattice, progress)?;
+    progress.share(0.8);
     let crossing = |edge: Edge| Some(Crossing { t: passages.at(edge)?, triangle: NO_TRIANGLE });
     let mut contour = contour(lattice, &grid, &crossing, &ContourOptions::default(), progress)?;
     drop(grid);
+    progress.share(0.9);
     let positions = &contour.mesh.positions;
     let planes: Vec<Plane> = positions.par_chunks(PACKET).flat_map_iter(|points| tangents(field, points)).collect();
     progress.check()?;

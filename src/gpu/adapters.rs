@@ -93,7 +93,7 @@ impl Wanted {
 impl std::fmt::Display for Wanted {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Any => f.write_str("that can make layered depth images"),
+            Self::Any => f.write_str("that can find the crossings of rays"),
             Self::Hardware => f.write_str("that is a graphics processor"),
             Self::Named(words) => write!(f, "named `{words}`"),
         }

@@ -18,7 +18,7 @@ pub enum GpuError {
         present: Vec<String>,
     },
     /// The adapter is there, but its driver gives no device.
-    #[error("the driver of {adapter} gives no device: {reason}")]
+    #[error("the driver of {adapter} does not open it: {reason}")]
     NoDevice {
         /// The adapter's name.
         adapter: String,

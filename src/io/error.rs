@@ -65,7 +65,8 @@ pub enum ReadProblem {
     NoTriangles,
     /// The file holds points alone; a surface must be laid through them first.
     #[error(
-        "a point cloud: the file holds {points} points and no face; a program that lays a surface through points must come first"
+        "a point cloud: the file holds {} and no face; a program that lays a surface through points must come first",
+        super::soup::counted(*points, "point")
     )]
     PointCloud {
         /// How many there are.

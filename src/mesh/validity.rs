@@ -104,8 +104,8 @@ impl Validity {
             ),
             (
                 self.nonmanifold_vertices,
-                "vertex joins several fans of triangles",
-                "vertices join several fans of triangles each",
+                "vertex joins surfaces that touch only there",
+                "vertices join surfaces that touch only there",
             ),
             (
                 self.self_intersecting_triangles.unwrap_or(0),

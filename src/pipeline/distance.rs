@@ -8,6 +8,7 @@ use super::backend::{self, PrismError};
 use super::frame::Frame;
 use super::plan::{BASE_BYTES, Input};
 use super::{Backend, BackendReport, Error, StageTime, VoxelSize, prepare, solid, stages};
+use crate::digits;
 use crate::lattice::{BRICK, Grid, Lattice, Slot};
 use crate::ldi::{Expression, MAX_VOXELS, Spans, ldis, spans};
 use crate::mesh::TriMesh;
@@ -198,9 +199,11 @@ fn place(input: &TriMesh, options: &DistanceOptions) -> Result<(Lattice, Band), 
     let longest = f64::from(lattice.dims.max_element());
     if !(band > 0.0 && longest + 2.0 * band + 2.0 < f64::from(MAX_VOXELS)) {
         let reason = format!(
-            "a band of {length} around the mesh makes a lattice of {:.0} voxels, and at most {MAX_VOXELS} are possible: \
-             a narrower band, `full`, or a larger voxel",
-            longest + 2.0 * band
+            "a band of {} around the mesh makes a lattice of {} voxels along a side, and at most {} are possible: \
+             use a narrower band, `full`, or a larger voxel",
+            digits::number(length),
+            digits::number(longest + 2.0 * band),
+            digits::count(MAX_VOXELS as usize)
         );
         return Err(Error::VoxelSize { reason });
     }

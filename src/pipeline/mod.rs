@@ -239,7 +239,7 @@ pub enum Error {
     #[error(transparent)]
     Filter(FilterError),
     /// A canal was to be filled that is not in the list.
-    #[error("there is no canal {number}: {count} were found")]
+    #[error("there is no canal {number}: {count} {} found", if *count == 1 { "was" } else { "were" })]
     MissingCanal {
         /// The number that was given.
         number: u32,
@@ -271,7 +271,10 @@ pub enum Error {
 }
 
 fn fits(voxel: &Option<f64>) -> String {
-    voxel.map_or_else(|| "; no voxel size would fit".into(), |h| format!("; a voxel of {h:.4} would fit"))
+    voxel.as_ref().map_or_else(
+        || "; no voxel size would fit".into(),
+        |h| format!("; a voxel of {} would fit", crate::digits::rounded_up(*h)),
+    )
 }
 
 /// Repairs one soup: all its shells are one operand.

@@ -8,6 +8,7 @@ use super::crumbs::without_made_crumbs;
 use super::frame::Frame;
 use super::plan::{Offsets, check_offsets};
 use super::{Error, Options, Outcome, TriangleSource, boolean, kind, prepare, refine, stages};
+use crate::digits;
 use crate::fit::{Facets, FitOptions, FitReport, Sides, Surface, Wanted, fit};
 use crate::lattice::Lattice;
 use crate::ldi::{Evidence, Expression};
@@ -117,7 +118,7 @@ fn is_affordable(input: &TriMesh, options: &MorphologyOptions, h: f64) -> bool {
 
 /// A radius, or why it is none.
 pub(super) fn usable(radius: f64) -> Result<f64, Error> {
-    let reason = || format!("a radius of {radius} cannot be used; it must be a positive length");
+    let reason = || format!("a radius of {} cannot be used; it must be above zero", digits::number(radius));
     if radius > 0.0 && radius.is_finite() { Ok(radius) } else { Err(Error::VoxelSize { reason: reason() }) }
 }
 
@@ -269,7 +270,7 @@ impl Run<'_> {
 
     fn nothing_left(&self, level: f64) -> Error {
         let reason = if level < 0.0 && self.options.operation != Operation::Close {
-            format!("nothing is left: the solid is nowhere thicker than {}", 2.0 * level.abs())
+            format!("nothing is left: the solid is nowhere thicker than {}", digits::number(2.0 * level.abs()))
         } else {
             "nothing is left".into()
         };
@@ -277,7 +278,7 @@ impl Run<'_> {
     }
 
     fn all_too_thin(&self, h: f64) -> Error {
-        let reason = format!("what is left is thinner than a voxel of {h} everywhere: a smaller voxel shows it");
+        let reason = format!("what is left is thinner than a voxel of {} everywhere: a smaller voxel shows it", digits::number(h));
         Error::NothingEnclosed { reason }
     }
 

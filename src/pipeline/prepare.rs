@@ -19,6 +19,9 @@ const F32_STEPS: f64 = 64.0;
 /// The most voxels along the longest side of a box: what the rays can number, less room around it.
 pub const MAX_RESOLUTION: u32 = MAX_VOXELS as u32 - 16;
 
+/// A voxel that is suggested is this much larger than the finest, so that it can be rounded to two digits and still be typed.
+pub(super) const TYPED: f64 = 1.1;
+
 /// The finest voxel that a lattice around `bounds` can have, model units.
 pub(super) fn finest(bounds: &Bounds) -> f64 {
     let near = Frame::around(bounds).local_bounds(bounds);

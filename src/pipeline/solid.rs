@@ -2,6 +2,7 @@
 
 use glam::IVec3;
 
+use super::prepare::TYPED;
 use super::{Error, LdiReport, Report, ThinRegion, ThinReport};
 use crate::contour::{Crossing, Edge, NO_TRIANGLE};
 use crate::digits;
@@ -75,7 +76,10 @@ fn thin(lengths: &Lengths, h: f64, finest: f64) -> ThinReport {
         lost_spans: lengths.lost,
         thin_gaps: shorter(&lengths.gaps),
         thinnest: percentile,
-        voxel_that_keeps: percentile.filter(|_| thin_spans > 0).map(|length| length / THIN).filter(|&h| h >= finest),
+        voxel_that_keeps: percentile
+            .filter(|_| thin_spans > 0)
+            .map(|length| length / THIN)
+            .filter(|&h| h >= TYPED * finest),
         regions: Vec::new(),
     }
 }
@@ -110,7 +114,7 @@ pub(super) fn warnings(report: &Report) -> Vec<String> {
     let lost = share(report.thin.lost_spans, report.thin.spans);
     if lost > MANY_LOST && !report.kept_all() {
         warnings.push(format!(
-            "{:.0} % of the rays through the solid pass walls that fall between voxels{}",
+            "{:.0} % of the walls that rays meet fall between the voxels and may be missing{}",
             100.0 * lost,
             keeping_voxel(&report.thin)
         ));
@@ -118,8 +122,8 @@ pub(super) fn warnings(report: &Report) -> Vec<String> {
     let silent = share(report.ldi.silent_rays, report.ldi.rays);
     if silent > MANY_SILENT {
         warnings.push(format!(
-            "{:.0} % of the rays meet an open or doubled surface and cannot tell inside from outside: \
-             look at the doubtful regions",
+            "{:.0} % of the test rays meet an open or doubled surface and cannot tell inside from outside: \
+             look whether the result is what you want (-v lists the doubtful places)",
             100.0 * silent
         ));
     }

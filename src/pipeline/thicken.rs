@@ -78,7 +78,7 @@ pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -
     if least < LEAST_VOXELS * h {
         let (fits, finest) = (least / LEAST_VOXELS, prepare::finest(&bounds));
         let [walls, voxel] = [least, h].map(digits::number);
-        let possible = if fits < finest {
+        let possible = if fits < prepare::TYPED * finest {
             format!(
                 "{}, which is finer than is possible here: walls of at least {} are",
                 digits::number(fits),

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::frame::Frame;
-use super::prepare::{self, MAX_RESOLUTION};
+use super::prepare::{self, MAX_RESOLUTION, TYPED};
 use super::{Error, Options, plan, solid};
 use crate::ldi::{Expression, Spans, THIN, ldis, spans, widths};
 use crate::mesh::TriMesh;
@@ -73,7 +73,7 @@ pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Res
     let gaps = LengthsReport::of(&found.gaps, lattice.h);
     let thinnest = [&walls, &gaps].into_iter().filter(|l| l.count > 0).map(|l| l.percentiles[0]).reduce(f64::min);
     let finest = prepare::finest(&bounds);
-    let voxel_that_keeps = thinnest.map(|width| width / THIN).filter(|&voxel| voxel >= finest);
+    let voxel_that_keeps = thinnest.map(|width| width / THIN).filter(|&voxel| voxel >= TYPED * finest);
     let along = |voxel: f64| (bounds.size().max_element() / voxel).ceil() as u32;
     let resolution_that_keeps = voxel_that_keeps.map(|voxel| along(voxel).min(MAX_RESOLUTION));
     let silent = silent as f64 / rays.max(1) as f64;

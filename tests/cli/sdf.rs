@@ -211,11 +211,13 @@ fn a_plan_and_a_cap() {
     };
     assert!(plan("2h") < plan("10h") && plan("10h") < plan("40h"));
     for flags in ["-o OUT/a.nrrd", "--plan"] {
-        run_in(&folder, &format!("sdf testdata/torus.ply {flags} --max-memory 1M")).exits(5).says(&[
-            "error: ",
-            "--max-memory",
-            "hint: a narrower --band",
-        ]);
+        for (cap, hint) in [("30M", "hint: a narrower --band"), ("1M", "hint: the inputs alone need that much")] {
+            run_in(&folder, &format!("sdf testdata/torus.ply {flags} --max-memory {cap}")).exits(5).says(&[
+                "error: ",
+                "--max-memory",
+                hint,
+            ]);
+        }
     }
     run_in(&folder, "sdf testdata/torus.ply -o OUT/a.nrrd --timeout 0s").exits(6);
     assert_empty(&folder);

@@ -78,9 +78,27 @@ fn units_survive_where_the_format_holds_them() {
         for unit in Unit::ALL {
             let options = WriteOptions { unit: Some(unit), ..WriteOptions::new(format) };
             let loaded = read_bytes(&encoded(&tetrahedron(), &options), None, None).unwrap();
-            assert_eq!(loaded.unit, Some(unit), "{format}");
-            assert_eq!(loaded.mesh, tetrahedron(), "{format}");
+            // glTF is in metres.
+            let (expected, factor) = if format == Format::ThreeMf { (unit, 1.0) } else { (Unit::Metre, unit.metres()) };
+            assert_eq!((loaded.unit, options.unit_in_file()), (Some(expected), Some(expected)), "{format}");
+            assert_eq!(options.factor(), factor);
+            let scaled = tetrahedron().positions.iter().map(|p| *p * factor).collect();
+            assert_eq!(loaded.mesh, TriMesh { positions: scaled, ..tetrahedron() }, "{format}");
         }
+        let loaded = read_bytes(&encoded(&tetrahedron(), &WriteOptions::new(format)), None, None).unwrap();
+        assert_eq!((loaded.unit, loaded.mesh), (WriteOptions::new(format).unit_in_file(), tetrahedron()), "{format}");
+    }
+}
+
+#[test]
+fn a_note_on_the_unit_counts_only_where_this_program_left_it() {
+    let document = String::from_utf8(encoded(&tetrahedron(), &WriteOptions::new(Format::Gltf))).unwrap();
+    for (generator, unit) in [("meshwright", Unit::Inch), ("another", Unit::Metre)] {
+        let asset = format!("\"extras\":{{\"unit\":\"inch\"}},\"generator\":\"{generator}\"");
+        let noted = document.replace("\"generator\":\"meshwright\"", &asset);
+        assert_ne!(noted, document);
+        let loaded = read_bytes(noted.as_bytes(), None, None).unwrap();
+        assert_eq!((loaded.unit, loaded.mesh), (Some(unit), tetrahedron()), "{generator}");
     }
 }
 

@@ -79,7 +79,7 @@ fn cubes_that_share_an_edge_or_a_corner_are_no_manifold() {
     assert_eq!(edge.self_intersecting_triangles, Some(0));
     let corner = joined(DVec3::ONE);
     assert_eq!((corner.nonmanifold_edges, corner.nonmanifold_vertices, corner.bodies), (0, 1, 2));
-    assert_eq!(corner.problems(), ["1 vertex joins several fans of triangles."]);
+    assert_eq!(corner.problems(), ["1 vertex joins surfaces that touch only there."]);
     // Faces that coincide are duplicates, and every one of them intersects its copy.
     let face = joined(DVec3::X);
     assert!(face.nonmanifold_edges > 0 && face.self_intersecting_triangles > Some(0));

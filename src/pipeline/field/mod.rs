@@ -16,6 +16,7 @@ use super::{
     DistanceReport, Dropped, Error, Options, Outcome, Report, TriangleCounts, TriangleSource, VoxelSize, prepare,
     refine, stages,
 };
+use crate::digits;
 use crate::field::filter::FilterError;
 use crate::field::{Extent, Field, FillError, FillOptions, LevelError, Shared, fill, level};
 use crate::fit::{Facets, FitReport, fit};
@@ -176,8 +177,11 @@ pub fn field_grid(
     let most = f64::from(lattice.dims.max_element()) + 2.0 * room;
     if most.is_nan() || most >= f64::from(MAX_VOXELS) {
         let reason = format!(
-            "a band of {room} voxels makes a lattice of {most:.0}, and at most {MAX_VOXELS} are possible: \
-             a narrower band, or a larger voxel"
+            "a band of {} voxels makes a lattice of {} along a side, and at most {} are possible: \
+             use a narrower band, or a larger voxel",
+            digits::number(room),
+            digits::number(most),
+            digits::count(MAX_VOXELS as usize)
         );
         return Err(Error::VoxelSize { reason });
     }

@@ -89,7 +89,7 @@ pub enum ExactError {
     #[error("a band of {0} voxels cannot be filled; it must be a positive length, or full")]
     Band(f64),
     /// More memory would be needed than allowed.
-    #[error("about {} MB would be needed and {} MB are allowed: a narrower band or a larger voxel",
+    #[error("about {} MB would be needed and {} MB are allowed: use a narrower band or a larger voxel",
         needed / 1_000_000, allowed / 1_000_000)]
     Memory {
         /// Estimated peak, bytes.

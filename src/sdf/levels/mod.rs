@@ -40,7 +40,7 @@ pub enum LevelsError {
     #[error(transparent)]
     Stopped(#[from] Stopped),
     /// There is no room for a bit a voxel.
-    #[error("a bit for each of {dims} voxels takes {} MB, and there is no room for them: a larger voxel", needed / 1_000_000)]
+    #[error("a bit for each of {dims} voxels takes {} MB, and there is no room for them: use a larger voxel", needed / 1_000_000)]
     Memory {
         /// Voxels along x, y, z.
         dims: IVec3,

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::super::error::{GridReadError, GridReadProblem, shown};
 use super::super::numbers::{Cap, Kind, count};
 use super::super::{GridFile, GridFormat, GridValues, all_finite};
+use crate::io::soup::counted;
 
 /// What the header says.
 struct Header {
@@ -28,7 +29,7 @@ pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, Gri
     };
     let mut warnings = Vec::new();
     if there > wanted {
-        warnings.push(format!("{} bytes after the array were left out", there - wanted));
+        warnings.push(format!("{} after the array left out", counted(there - wanted, "byte")));
     }
     // Turned, the values are there twice for a while.
     let turned_too = if header.fortran { 0 } else { size_of::<f32>() * (wanted / width) };
