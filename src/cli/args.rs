@@ -418,7 +418,7 @@ pub struct SolidArgs {
     /// How far flat parts may move while triangles are saved, or `off` to keep all [default: 0.002h]
     #[arg(long, value_name = "LEN|off", conflicts_with = "no_fit")]
     pub simplify: Option<Simplify>,
-    /// Write the result, coloured by what is original (grey) and what was made up (red), to this file
+    /// Write the result to this file, coloured by what is kept, rebuilt and made up
     #[arg(long, value_name = "FILE.ply")]
     pub map: Option<PathBuf>,
     /// Refuse to start when more memory would be needed (500M, 2G) [default: what is free]

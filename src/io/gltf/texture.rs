@@ -83,6 +83,8 @@ impl<'a> Looks<'a> {
         let most = soup.triangles[start..].iter().flatten().map(|v| (v - first) as usize).max();
         if most.is_some_and(|most| most >= coordinates.len()) {
             let there = counted(coordinates.len(), "value");
+            // Said once, however often it is placed.
+            self.coordinates.insert(index.value(), None);
             self.warnings.push(left_out(index, &format!("there are {there} for more vertices")));
             return;
         }

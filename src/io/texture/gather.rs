@@ -46,8 +46,8 @@ impl Woven {
     }
 
     /// Takes over what was found beside the mesh.
-    pub(in crate::io) fn hang(&mut self, gallery: Gallery<'_>, warnings: &mut Vec<String>) {
-        warnings.extend(gallery.warnings);
+    pub(in crate::io) fn hang(&mut self, mut gallery: Gallery<'_>, warnings: &mut Vec<String>) {
+        warnings.extend(gallery.sentences());
         (self.images.images, self.images.files) = (gallery.images, gallery.files);
     }
 
