@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::kind::same;
 use super::{Outcome, TriangleSource, classes};
-use crate::io::{Colours, Material, TexCoords, TextureImage, TextureMap};
+use crate::io::{Colours, Material, Rgba, TexCoords, TextureImage, TextureMap};
 use crate::mesh::{ClosestTree, TriMesh};
 
 /// A corner may lie so far beyond the triangle that it is projected onto, times the triangle's size; farther ones get the coordinates of the
@@ -78,6 +78,9 @@ pub fn carry_texture(outcome: &Outcome, operands: &[(&TriMesh, Option<&TextureMa
     Some(whole)
 }
 
+/// The name, the colour and the image of a material.
+type Look = (String, Option<Rgba>, Option<u32>);
+
 /// The materials and images of all operands, each once, and for each operand the new numbers of its materials.
 fn joined(operands: &[(&TriMesh, Option<&TextureMap>)]) -> Option<(TextureMap, Vec<Vec<u32>>)> {
     let mut textures = operands.iter().filter_map(|(_, texture)| *texture);
@@ -89,7 +92,7 @@ fn joined(operands: &[(&TriMesh, Option<&TextureMap>)]) -> Option<(TextureMap, V
             list.len() - 1
         })
     };
-    let mut numbers: FxHashMap<(String, Option<[u8; 4]>, Option<u32>), u32> = FxHashMap::default();
+    let mut numbers: FxHashMap<Look, u32> = FxHashMap::default();
     let mut offsets = Vec::new();
     for (_, texture) in operands {
         let Some(texture) = texture else {

@@ -130,17 +130,14 @@ impl<'a> Looks<'a> {
             let name = String::from_utf8_lossy(&percent_decoded(uri)).into_owned();
             return Some(self.gallery.image(&name));
         }
-        let fetch = |_: &mut Gallery<'_>| {
-            let bytes = match (&image.uri, image.buffer_view) {
-                (Some(uri), _) => {
-                    decoded_data(uri.trim_start_matches("data:")).map_err(|problem| problem.to_string()).map(Arc::from)
-                }
-                (None, Some(view)) => {
-                    buffers.view(root, view).map(|(bytes, _)| Arc::from(bytes)).map_err(|e| e.problem.to_string())
-                }
-                (None, None) => Err("it has neither bytes nor a file".into()),
-            };
-            bytes
+        let fetch = |_: &mut Gallery<'_>| match (&image.uri, image.buffer_view) {
+            (Some(uri), _) => {
+                decoded_data(uri.trim_start_matches("data:")).map_err(|problem| problem.to_string()).map(Arc::from)
+            }
+            (None, Some(view)) => {
+                buffers.view(root, view).map(|(bytes, _)| Arc::from(bytes)).map_err(|e| e.problem.to_string())
+            }
+            (None, None) => Err("it has neither bytes nor a file".into()),
         };
         let name = image.name.clone().filter(|name| !name.is_empty()).unwrap_or_else(|| format!("image_{number}"));
         // No file has this name.

@@ -96,7 +96,7 @@ impl Woven {
         self.coordinates.resize(triangles, None);
         self.material_of.resize(triangles, None);
         let used = self.coordinates.iter().any(Option::is_some) || self.material_of.iter().any(Option::is_some);
-        used.then(|| TextureMap {
+        used.then_some(TextureMap {
             coordinates: self.coordinates,
             material_of: self.material_of,
             materials: self.materials,
