@@ -20,16 +20,19 @@ const NEAR: f64 = 0.01;
 const INWARDS: f64 = 1e-3;
 
 /// A number for each triangle, for [`Options::classes`](super::Options::classes): the same for triangles of one colour, one material and one
-/// piece of a texture. Nothing where there is nothing to keep apart.
+/// piece of an image; coordinates without an image do not count. Nothing where there is nothing to keep apart.
 pub fn classes_of(mesh: &TriMesh, colours: Option<&Colours>, texture: Option<&TextureMap>) -> Vec<u32> {
     let of_colours = classes(colours);
     let Some(texture) = texture else { return of_colours };
     let charts = texture.charts(mesh);
-    let mut numbers: FxHashMap<(u32, u32), u32> = FxHashMap::default();
-    let pairs = charts.iter().enumerate().map(|(t, &chart)| (chart, of_colours.get(t).copied().unwrap_or(0)));
-    let all = pairs.map(|pair| {
+    let mut numbers: FxHashMap<(Option<u32>, Option<u32>, u32), u32> = FxHashMap::default();
+    let key = |(t, &chart): (usize, &u32)| {
+        let chart = texture.image(t).map(|_| chart);
+        (chart, texture.material_of.get(t).copied().flatten(), of_colours.get(t).copied().unwrap_or(0))
+    };
+    let all = charts.iter().enumerate().map(key).map(|key| {
         let next = numbers.len() as u32;
-        *numbers.entry(pair).or_insert(next)
+        *numbers.entry(key).or_insert(next)
     });
     let all: Vec<u32> = all.collect();
     if all.iter().all(|number| *number == 0) { Vec::new() } else { all }
@@ -222,6 +225,23 @@ mod tests {
         assert_eq!(triangle.map(|p| at(p, triangle, OWN)), OWN);
         let found = at((triangle[0] + triangle[1]) / 2.0, triangle, OWN);
         assert!((found[0] - 0.4).abs() < 1e-6 && (found[1] - 0.2).abs() < 1e-6, "{found:?}");
+    }
+
+    #[test]
+    fn coordinates_count_where_there_is_an_image() {
+        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)];
+        let mesh = TriMesh { positions, triangles: vec![[0, 1, 2], [2, 1, 3]] };
+        let material = |image| Material { name: String::new(), colour: None, image };
+        let texture = |image| TextureMap {
+            coordinates: vec![Some(OWN); 2],
+            material_of: vec![Some(0); 2],
+            materials: vec![material(image)],
+            ..TextureMap::default()
+        };
+        assert_eq!(classes_of(&mesh, None, Some(&texture(None))), Vec::<u32>::new());
+        assert_eq!(classes_of(&mesh, None, Some(&texture(Some(0)))), [0, 1]);
+        let colours = Colours::Faces(vec![[0; 4], [1; 4]]);
+        assert_eq!(classes_of(&mesh, Some(&colours), Some(&texture(None))), [0, 1]);
     }
 
     #[test]
