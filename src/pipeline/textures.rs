@@ -19,13 +19,16 @@ const NEAR: f64 = 0.01;
 /// So far towards the middle of its triangle a corner is looked at, to find the triangle that it belongs to of those that meet there.
 const INWARDS: f64 = 1e-3;
 
+/// A piece of an image, a material, a colour.
+type Class = (Option<u32>, Option<u32>, u32);
+
 /// A number for each triangle, for [`Options::classes`](super::Options::classes): the same for triangles of one colour, one material and one
 /// piece of an image; coordinates without an image do not count. Nothing where there is nothing to keep apart.
 pub fn classes_of(mesh: &TriMesh, colours: Option<&Colours>, texture: Option<&TextureMap>) -> Vec<u32> {
     let of_colours = classes(colours);
     let Some(texture) = texture else { return of_colours };
     let charts = texture.charts(mesh);
-    let mut numbers: FxHashMap<(Option<u32>, Option<u32>, u32), u32> = FxHashMap::default();
+    let mut numbers: FxHashMap<Class, u32> = FxHashMap::default();
     let key = |(t, &chart): (usize, &u32)| {
         let chart = texture.image(t).map(|_| chart);
         (chart, texture.material_of.get(t).copied().flatten(), of_colours.get(t).copied().unwrap_or(0))
