@@ -19,6 +19,7 @@ pub fn check(data: &[u8], format: Format) {
     assert!(mesh.triangles.iter().flatten().all(|&v| (v as usize) < mesh.positions.len()));
     assert!(!loaded.parts.is_empty());
     assert!(loaded.parts.iter().all(|p| p.triangles.start < p.triangles.end && p.triangles.end <= mesh.triangles.len()));
+    assert!(loaded.texture.as_ref().is_none_or(|texture| texture.fits(mesh)));
     if let Some(negative) = &loaded.negative {
         assert!(!negative.mesh.triangles.is_empty() && negative.mesh.positions.iter().all(|p| p.is_finite()));
         assert!(negative.mesh.triangles.iter().flatten().all(|&v| (v as usize) < negative.mesh.positions.len()));

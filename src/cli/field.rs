@@ -11,7 +11,7 @@ use super::exit::{Asked, Exit, Failure};
 use super::field_args::FieldArgs;
 use super::files::Made;
 use super::given::{Given, Which};
-use super::input::{self, Input, is_stream};
+use super::input::{self, is_stream};
 use super::length::{BandChoice, Length, Scale, Simplify};
 use super::output::Target;
 use super::report::RunReport;
@@ -242,10 +242,8 @@ fn options(args: &FieldArgs, scale: &Scale, given: &Given, held: u64) -> Result<
         _ => VoxelSize::Along(args.resolution),
     };
     let usual = FitOptions::default();
-    // Colours and images that vary are kept apart by the vertices.
-    let varies = args.paint.is_some() || given.meshes.iter().any(Input::has_images);
-    // Lengths are measured when the voxel is known.
-    let keeps_all = args.simplify == Some(Simplify::Off) || args.simplify.is_none() && varies;
+    // Colours that vary are kept apart by the vertices. Lengths are measured when the voxel is known.
+    let keeps_all = args.simplify == Some(Simplify::Off) || args.simplify.is_none() && args.paint.is_some();
     let tolerance = if keeps_all { 0.0 } else { usual.tolerance };
     Ok(Options {
         fit: (!args.no_fit).then_some(FitOptions { tolerance, ..usual }),

@@ -31,12 +31,6 @@ impl Input {
         let Loaded { mesh, colours, texture, .. } = &self.loaded;
         pipeline::classes_of(mesh, colours.as_ref(), texture.as_ref())
     }
-
-    /// Whether triangles have an image.
-    pub fn has_images(&self) -> bool {
-        let texture = self.loaded.texture.as_ref();
-        texture.is_some_and(|texture| (0..texture.coordinates.len()).any(|t| texture.image(t).is_some()))
-    }
 }
 
 /// Bytes of memory that the textures of all inputs take.

@@ -99,12 +99,10 @@ fn trust(rule: VoteRule) -> Trust {
     if rule == VoteRule::Winding { Trust::All } else { Trust::Sure }
 }
 
-/// What `--no-fit`, `--rebuild` and `--simplify` ask for. Colours and textures that vary within triangles would be smeared over the
+/// What `--no-fit`, `--rebuild` and `--simplify` ask for. Colours that vary within triangles would be smeared over the
 /// large triangles of simplified flat parts, so with them all triangles are kept unless it is asked for.
 fn fit(args: &SolidArgs, scale: &Scale, inputs: &[Input]) -> Result<Option<FitOptions>, Failure> {
-    let varying = |input: &Input| {
-        matches!(input.loaded.colours, Some(Colours::Vertices(_) | Colours::Corners(_))) || input.has_images()
-    };
+    let varying = |input: &Input| matches!(input.loaded.colours, Some(Colours::Vertices(_) | Colours::Corners(_)));
     let usual = FitOptions::default();
     let tolerance = match (args.simplify, scale.voxel) {
         (Some(Simplify::Off), _) => 0.0,

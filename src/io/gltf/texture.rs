@@ -83,6 +83,8 @@ impl<'a> Looks<'a> {
         let most = soup.triangles[start..].iter().flatten().map(|v| (v - first) as usize).max();
         if most.is_some_and(|most| most >= coordinates.len()) {
             let there = counted(coordinates.len(), "value");
+            // Said once, however often it is placed.
+            self.coordinates.insert(index.value(), None);
             self.warnings.push(left_out(index, &format!("there are {there} for more vertices")));
             return;
         }
@@ -128,17 +130,14 @@ impl<'a> Looks<'a> {
             let name = String::from_utf8_lossy(&percent_decoded(uri)).into_owned();
             return Some(self.gallery.image(&name));
         }
-        let fetch = |_: &mut Gallery<'_>| {
-            let bytes = match (&image.uri, image.buffer_view) {
-                (Some(uri), _) => {
-                    decoded_data(uri.trim_start_matches("data:")).map_err(|problem| problem.to_string()).map(Arc::from)
-                }
-                (None, Some(view)) => {
-                    buffers.view(root, view).map(|(bytes, _)| Arc::from(bytes)).map_err(|e| e.problem.to_string())
-                }
-                (None, None) => Err("it has neither bytes nor a file".into()),
-            };
-            bytes
+        let fetch = |_: &mut Gallery<'_>| match (&image.uri, image.buffer_view) {
+            (Some(uri), _) => {
+                decoded_data(uri.trim_start_matches("data:")).map_err(|problem| problem.to_string()).map(Arc::from)
+            }
+            (None, Some(view)) => {
+                buffers.view(root, view).map(|(bytes, _)| Arc::from(bytes)).map_err(|e| e.problem.to_string())
+            }
+            (None, None) => Err("it has neither bytes nor a file".into()),
         };
         let name = image.name.clone().filter(|name| !name.is_empty()).unwrap_or_else(|| format!("image_{number}"));
         // No file has this name.

@@ -80,19 +80,7 @@ fn document(content: &Content<'_>, unit: Option<Unit>, uri: Option<String>) -> V
         })
         .collect();
     let primitives: Vec<Value> = (content.pieces.iter().zip(indices))
-        .map(|(piece, indices)| {
-            let mut primitive = json!({ "attributes": { "POSITION": positions }, "indices": indices });
-            if let Some(colours) = colours {
-                primitive["attributes"]["COLOR_0"] = json!(colours);
-            }
-            if let Some(coordinates) = coordinates.filter(|_| piece.textured) {
-                primitive["attributes"]["TEXCOORD_0"] = json!(coordinates);
-            }
-            if let Some(material) = content.material_of(piece) {
-                primitive["material"] = json!(material);
-            }
-            primitive
-        })
+        .map(|(piece, indices)| primitive(content, piece, [Some(positions), colours, coordinates], indices))
         .collect();
     let mut buffer = json!({ "byteLength": lists.bytes });
     if let Some(uri) = uri {
@@ -117,6 +105,22 @@ fn document(content: &Content<'_>, unit: Option<Unit>, uri: Option<String>) -> V
         (document["textures"], document["images"]) = (Value::Array(textures), Value::Array(images));
     }
     document
+}
+
+/// A piece; the accessors are those of positions, colours and texture coordinates.
+fn primitive(content: &Content<'_>, piece: &Piece, accessors: [Option<usize>; 3], indices: usize) -> Value {
+    let [positions, colours, coordinates] = accessors;
+    let mut primitive = json!({ "attributes": { "POSITION": positions }, "indices": indices });
+    if let Some(colours) = colours {
+        primitive["attributes"]["COLOR_0"] = json!(colours);
+    }
+    if let Some(coordinates) = coordinates.filter(|_| piece.textured) {
+        primitive["attributes"]["TEXCOORD_0"] = json!(coordinates);
+    }
+    if let Some(material) = content.material_of(piece) {
+        primitive["material"] = json!(material);
+    }
+    primitive
 }
 
 fn index_accessor(view: usize, piece: &Piece) -> Value {

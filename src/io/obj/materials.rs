@@ -191,7 +191,7 @@ impl Read<'_> {
 
     fn no_library(&mut self, name: &[u8], reason: &str) {
         let what = quoted(name);
-        self.gallery.warnings.push(format!(
+        self.gallery.complain(format!(
             "the file of materials {what} left out: {reason}; names of materials and texture coordinates are kept"
         ));
     }

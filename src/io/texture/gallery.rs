@@ -11,6 +11,9 @@ use super::beside::{MOST_BESIDE, file_beside, read_beside};
 /// Files beside a mesh that are looked for: a small file may name any number.
 const MOST_FILES: usize = 4096;
 
+/// So many files that cannot be had are named; the others are counted.
+const MOST_NAMED: usize = 16;
+
 /// What is read beside a mesh, each file once.
 pub(in crate::io) struct Gallery<'a> {
     /// The mesh's own file; `None` for a stream.
@@ -25,7 +28,9 @@ pub(in crate::io) struct Gallery<'a> {
     /// The files that were read.
     pub(in crate::io) files: Vec<PathBuf>,
     /// Sentences about what could not be had.
-    pub(in crate::io) warnings: Vec<String>,
+    warnings: Vec<String>,
+    /// How many there would be more.
+    unsaid: usize,
 }
 
 impl<'a> Gallery<'a> {
@@ -38,6 +43,7 @@ impl<'a> Gallery<'a> {
             images: Vec::new(),
             files: Vec::new(),
             warnings: Vec::new(),
+            unsaid: 0,
         }
     }
 
@@ -60,6 +66,20 @@ impl<'a> Gallery<'a> {
         Ok(bytes)
     }
 
+    /// Says something about what could not be had.
+    pub(in crate::io) fn complain(&mut self, sentence: String) {
+        match self.warnings.len() < MOST_NAMED {
+            true => self.warnings.push(sentence),
+            false => self.unsaid += 1,
+        }
+    }
+
+    /// What was said.
+    pub(in crate::io) fn sentences(&mut self) -> Vec<String> {
+        let more = (self.unsaid > 0).then(|| format!("{} more of such files left out", self.unsaid));
+        std::mem::take(&mut self.warnings).into_iter().chain(more).collect()
+    }
+
     /// The number of the image in the file of this name, which is fetched when first asked for. Where there is none, the image has its name
     /// alone, and a sentence says why.
     pub(in crate::io) fn image(&mut self, name: &str) -> u32 {
@@ -80,11 +100,16 @@ impl<'a> Gallery<'a> {
         }
         let bytes = fetch(self).unwrap_or_else(|reason| {
             let what = quoted(name.as_bytes());
-            self.warnings.push(format!("the image {what} left out: {reason}; texture coordinates are kept"));
+            self.complain(format!("the image {what} left out: {reason}; texture coordinates are kept"));
             Arc::from([])
         });
         let number = self.images.len() as u32;
-        let file_name = name.rsplit('/').next().unwrap_or_default().to_owned();
+        let file_name = name.rsplit('/').next().unwrap_or_default();
+        // What was written beside a mesh begins as that does; written beside another, it shall not begin as both.
+        let stem = self.base.and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned() + "_");
+        let own =
+            stem.and_then(|stem| file_name.strip_prefix(&stem)).filter(|own| !own.starts_with('.') && !own.is_empty());
+        let file_name = own.unwrap_or(file_name).to_owned();
         self.images.push(TextureImage { name: file_name, bytes });
         self.known.insert(key, number);
         number

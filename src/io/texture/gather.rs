@@ -46,8 +46,8 @@ impl Woven {
     }
 
     /// Takes over what was found beside the mesh.
-    pub(in crate::io) fn hang(&mut self, gallery: Gallery<'_>, warnings: &mut Vec<String>) {
-        warnings.extend(gallery.warnings);
+    pub(in crate::io) fn hang(&mut self, mut gallery: Gallery<'_>, warnings: &mut Vec<String>) {
+        warnings.extend(gallery.sentences());
         (self.images.images, self.images.files) = (gallery.images, gallery.files);
     }
 
@@ -96,7 +96,7 @@ impl Woven {
         self.coordinates.resize(triangles, None);
         self.material_of.resize(triangles, None);
         let used = self.coordinates.iter().any(Option::is_some) || self.material_of.iter().any(Option::is_some);
-        used.then(|| TextureMap {
+        used.then_some(TextureMap {
             coordinates: self.coordinates,
             material_of: self.material_of,
             materials: self.materials,

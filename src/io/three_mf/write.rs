@@ -156,14 +156,7 @@ fn write_model(
         (None, None) => {}
     }
     text.text("><mesh>\n<vertices>\n");
-    for p in &mesh.positions {
-        for (start, x) in ["<vertex x=\"", "\" y=\"", "\" z=\""].into_iter().zip(p.to_array()) {
-            text.text(start);
-            text.number(x);
-        }
-        text.text("\"/>\n");
-        text.pass_on()?;
-    }
+    write_vertices(mesh, &mut text)?;
     text.text("</vertices>\n<triangles>\n");
     for (triangle, t) in mesh.triangles.iter().enumerate() {
         for (start, v) in ["<triangle v1=\"", "\" v2=\"", "\" v3=\""].into_iter().zip(t) {
@@ -180,4 +173,16 @@ fn write_model(
     }
     text.text("</triangles>\n</mesh></object></resources>\n<build><item objectid=\"1\"/></build>\n</model>\n");
     text.finish()
+}
+
+fn write_vertices(mesh: &TriMesh, text: &mut TextOut<'_>) -> std::io::Result<()> {
+    for p in &mesh.positions {
+        for (start, x) in ["<vertex x=\"", "\" y=\"", "\" z=\""].into_iter().zip(p.to_array()) {
+            text.text(start);
+            text.number(x);
+        }
+        text.text("\"/>\n");
+        text.pass_on()?;
+    }
+    Ok(())
 }
