@@ -17,8 +17,7 @@ pub(super) struct Form {
 
 impl Form {
     /// Zero everywhere.
-    pub(super) const ZERO: Self =
-        Self { squares: DVec3::ZERO, mixed: DVec3::ZERO, linear: DVec3::ZERO, constant: 0.0 };
+    pub(super) const ZERO: Self = Self { squares: DVec3::ZERO, mixed: DVec3::ZERO, linear: DVec3::ZERO, constant: 0.0 };
 
     /// Adds `weight` times (normal · p − offset)².
     #[inline]
