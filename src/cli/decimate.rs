@@ -23,7 +23,7 @@ use crate::mesh::{Bounds, TriMesh};
 use crate::pipeline;
 
 /// Samples by which the distance that the surface has moved is told.
-const SAMPLES: usize = 20_000;
+const SAMPLES: usize = 4_000;
 
 /// `decimate IN -o OUT`.
 #[derive(Debug, Args)]

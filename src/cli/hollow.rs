@@ -87,6 +87,9 @@ pub fn done(found: &HollowReport, unit: UnitName<'_>) -> Vec<String> {
         format!("a drain of {diameter}, {depth} deep, from {} along {}", place(drain.at), place(drain.direction))
     };
     parts.extend(found.drains.iter().map(drain));
+    if !found.drains.is_empty() {
+        parts.push("what the drains cut of the surface was built anew, the rest is as said above".into());
+    }
     parts
 }
 
