@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::words;
 
 /// What each stage is called on the terminal.
-const WORDS: [(&str, &str); 27] = [
+const WORDS: [(&str, &str); 31] = [
     ("read", "reading"),
     ("examine", "looking for defects"),
     ("orient", "finding the outer sides"),
@@ -32,6 +32,10 @@ const WORDS: [(&str, &str); 27] = [
     ("verify", "checking the written file"),
     ("write and verify", "writing and checking the file"),
     ("thickness", "measuring walls and gaps"),
+    ("hollow", "making the cavity"),
+    ("subtract", "cutting"),
+    ("decimate", "taking triangles away"),
+    ("split", "taking bodies apart"),
     ("list", "looking for graphics adapters"),
 ];
 
@@ -64,6 +68,7 @@ fn after_the_solid(verb: &str) -> &'static [(&'static str, f64)] {
         "open" | "close" => &[("first offset", 90.0), ("second offset", 90.0), ("fit", 60.0)],
         "canals" => &[("first offset", 90.0), ("second offset", 90.0), ("canals", 60.0), ("fit", 60.0)],
         "thicken" => &[("thin walls", 60.0), ("fit", 60.0)],
+        "hollow" => &[("hollow", 5.0), ("offset", 60.0), ("fit", 60.0), ("subtract", 20.0)],
         _ => &[],
     }
 }
@@ -79,6 +84,8 @@ fn stages_of(verb: &str) -> Vec<(&'static str, f64)> {
         "field" => stages_of_field(1),
         "inspect" => vec![("read", 20.0), ("examine", 50.0), ("orient", 5.0), ("ldi", 50.0), ("spans", 20.0)],
         "compare" => vec![("read", 10.0), ("compare", 60.0), ("map", 30.0)],
+        "decimate" => vec![("read", 5.0), ("decimate", 70.0), ("compare", 15.0), ("write", 4.0), ("verify", 6.0)],
+        "split" => vec![("read", 20.0), ("split", 30.0), ("write", 25.0), ("verify", 25.0)],
         "convert" => vec![("read", 40.0), ("write", 30.0), ("verify", 30.0)],
         "render" => vec![("read", 20.0), ("draw", 80.0)],
         _ => {

@@ -303,7 +303,7 @@ pub fn inspection(input: &Input, validity: &Validity, unit: Option<Unit>) -> Vec
         ("vertices", vertices),
         ("surfaces", words::count(validity.bodies)),
         ("tunnels", validity.genus.map_or("not known: the surface is not closed".into(), |genus| genus.to_string())),
-        ("area", area),
+        ("area", words::area(validity.area, name)),
         ("volume", words::volume(validity.volume, name)),
         ("closed", yes_no(validity.is_closed()).into()),
         ("oriented", yes_no(validity.is_oriented_manifold()).into()),

@@ -278,7 +278,10 @@ impl Run<'_> {
     }
 
     fn all_too_thin(&self, h: f64) -> Error {
-        let reason = format!("what is left is thinner than a voxel of {} everywhere: a smaller voxel shows it", digits::number(h));
+        let reason = format!(
+            "what is left is thinner than a voxel of {} everywhere: a smaller voxel shows it",
+            digits::number(h)
+        );
         Error::NothingEnclosed { reason }
     }
 
