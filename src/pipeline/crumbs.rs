@@ -14,6 +14,10 @@ use crate::shells::{Shell, Shells, shells};
 /// crumbs of the data set, 17 in lion and beetle, the largest has 4.7 h³.
 const CRUMB: f64 = 8.0;
 
+/// Pieces that have more than this part of the volume together are no crumbs but what a lattice has left of a body, however small each is: they stay, and are told
+/// as pieces that came off.
+const FRAGMENTS: f64 = 1e-3;
+
 /// Closed surfaces that were dropped.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Dropped {
@@ -37,7 +41,7 @@ impl Dropped {
 }
 
 /// What was made of a soup with voxels of `h`, without crumbs. The largest piece of every closed shell of the soup, and of one with
-/// small holes, is none; nor is the largest piece of all.
+/// small holes, is none; nor is the largest piece of all. Where crumbs are much of the volume, all stay.
 pub(super) fn without_crumbs(made: &mut Outcome, soup: &Soup, h: f64) {
     let found = shells_of(&made.mesh);
     if found.list.iter().all(|shell| is_large(shell, h)) {
@@ -59,6 +63,13 @@ pub(super) fn without_crumbs(made: &mut Outcome, soup: &Soup, h: f64) {
     }
     let mut stays: Vec<bool> = found.list.iter().map(|shell| is_large(shell, h)).collect();
     largest.values().for_each(|&piece| stays[piece as usize] = true);
+    let volume = |of: bool| -> f64 {
+        let chosen = found.list.iter().zip(&stays).filter(|(_, stays)| **stays == of);
+        chosen.map(|(shell, _)| shell.volume.abs()).sum()
+    };
+    if volume(false) > FRAGMENTS * volume(true) {
+        return;
+    }
     made.report.crumbs = sweep(made, &found, stays);
 }
 
