@@ -102,12 +102,12 @@ impl Search<'_> {
     /// Whether all corners of the cell over `voxel` lie on the other side, and one so near that there may be something between.
     fn is_bare(&self, voxel: IVec3) -> bool {
         let first = self.at_voxel(voxel);
-        if first >= 0.0 || first < -3.0 * HALF_DIAGONAL {
+        if !(-3.0 * HALF_DIAGONAL..0.0).contains(&first) {
             return false;
         }
         let corners = corners().map(|corner| self.at_voxel(voxel + corner));
         let nearest = corners.fold(f64::NEG_INFINITY, f64::max);
-        nearest < 0.0 && nearest >= -HALF_DIAGONAL
+        (-HALF_DIAGONAL..0.0).contains(&nearest)
     }
 
     fn in_cell(&self, voxel: IVec3) -> Vec<At> {
