@@ -12,6 +12,9 @@ const TOO_MANY_LOST: f64 = 0.2;
 /// result is a guess. A car body made of sheets has 0.3, a hundred scattered triangles 0.7.
 const TOO_MANY_DOUBTS: f64 = 0.5;
 
+/// More than this share of the surface that morphology should leave is thinner than a voxel: what there is of it are rags.
+const TOO_MUCH_THIN: f64 = 0.1;
+
 /// A sentence for each reason why the result is not what the input describes. Such a result is written only when that is asked for.
 pub fn lost(report: &RunReport) -> Vec<String> {
     let mut sentences = Vec::new();
@@ -27,6 +30,14 @@ pub fn lost(report: &RunReport) -> Vec<String> {
             sentences.push(format!(
                 "{} of the voxels near the surface are a guess: the surface is too open to tell inside from outside",
                 words::percent(vote.doubtful, vote.voxels)
+            ));
+        }
+        if let Some(change) = pipeline.morphology.as_ref().filter(|change| change.thin_share > TOO_MUCH_THIN) {
+            let share = words::percent((1000.0 * change.thin_share) as usize, 1000);
+            sentences.push(format!(
+                "{share} of the surface that there should be bounds what is thinner than a voxel of {}, and is missing or in rags{}",
+                words::number(change.voxel),
+                change.voxel_that_holds.map_or(String::new(), |h| format!("; half of it is {} thick or more", words::number(h)))
             ));
         }
         if let Some(topology) = pipeline.topology.as_ref().filter(|topology| topology.is_large()) {

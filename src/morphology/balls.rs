@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::offset::MARGIN;
-use super::{Body, MorphologyError};
+use super::{Body, MorphologyError, Remain};
 use crate::lattice::{BRICK_VOXELS, Grid, Lattice, Slot};
 use crate::mesh::edges::Union;
 use crate::mesh::{Plane, TriMesh};
@@ -31,9 +31,9 @@ pub struct Centres {
 }
 
 impl Centres {
-    /// Of the surface, closed, that the lattice shows, and the points of its level around what lies between the voxels; model units.
-    pub fn new(mut surface: TriMesh, points: &[DVec3], h: f64) -> Self {
-        for &p in points {
+    /// Of the surface, closed, that the lattice shows, and its level around what lies between the voxels; `h` in model units.
+    pub fn new(mut surface: TriMesh, between: &[Remain], h: f64) -> Self {
+        for p in between.iter().map(|remain| remain.point) {
             let first = surface.positions.len() as u32;
             surface.positions.extend([DVec3::X, DVec3::Y, DVec3::Z].map(|axis| p + axis * (POINT * h)));
             surface.triangles.push([first, first + 1, first + 2]);
@@ -70,9 +70,10 @@ fn join_near(sets: &mut Union, points: &[DVec3], side: f64) {
 }
 
 /// In how many places the points lie; those in cubes of `side` that touch lie in one.
-pub fn places(points: &[DVec3], side: f64) -> usize {
+pub fn places(remains: &[Remain], side: f64) -> usize {
+    let points: Vec<DVec3> = remains.iter().map(|remain| remain.point).collect();
     let mut sets = Union::new(points.len());
-    join_near(&mut sets, points, side);
+    join_near(&mut sets, &points, side);
     (0..points.len() as u32).filter(|&n| sets.root(n) == n).count()
 }
 

@@ -79,8 +79,8 @@ pub fn closed(
         contour.vertices[v].triangle = n;
     }
     let search = Search { body: original, level: 0.0, side: -balls.radius.signum(), lattice, field: &own };
-    let thin = search.points(progress)?;
-    let remains = thin.into_iter().filter(|&p| balls.at(p, h).0.abs() < unchanged(balls.radius, h)).collect();
+    let mut remains = search.remains(progress)?;
+    remains.retain(|remain| balls.at(remain.point, h).0.abs() < unchanged(balls.radius, h));
     Ok(Closed { offset: Offset { contour, planes, remains }, changed })
 }
 

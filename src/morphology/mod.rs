@@ -18,6 +18,7 @@ pub use balls::{Balls, Centres, places};
 pub use canals::{Canal, CanalKind, Canals, Region, canals};
 pub use closed::{Closed, Reached, closed, reached};
 pub use offset::{Body, Offset, offset};
+pub use remains::Remain;
 pub use thin::middles;
 
 use crate::progress::Stopped;

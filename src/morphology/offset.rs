@@ -6,7 +6,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::MorphologyError;
-use super::remains::Search;
+use super::remains::{Remain, Search};
 use crate::contour::{Contour, ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
 use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice};
 use crate::mesh::around::Around;
@@ -120,9 +120,9 @@ pub struct Offset {
     pub contour: Contour,
     /// The tangent planes, model units, normals outwards.
     pub planes: Vec<Plane>,
-    /// Points of the level around what is too thin for any voxel to lie in it, model units: of the outside for a level above 0,
-    /// of the inside for one below.
-    pub remains: Vec<DVec3>,
+    /// The level around what is too thin for any voxel to lie in it: of the outside for a level above 0, of the inside for one
+    /// below.
+    pub remains: Vec<Remain>,
 }
 
 /// The surface where the distance to `body` is `level` (model units, negative inside), on a lattice that must
@@ -144,7 +144,7 @@ pub fn offset(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progres
     let planes: Vec<Plane> = contour.mesh.positions.par_iter().map(|&p| tangent(body, level, p, lattice.h)).collect();
     progress.check()?;
     contour.vertices.iter_mut().zip(0..).for_each(|(vertex, n)| vertex.triangle = n);
-    let remains = Search { body, level, side: level.signum(), lattice, field: &field }.points(progress)?;
+    let remains = Search { body, level, side: level.signum(), lattice, field: &field }.remains(progress)?;
     Ok(Offset { contour, planes, remains })
 }
 

@@ -44,6 +44,17 @@ const CLIMBS: usize = 5;
 /// Two slopes that face each other more than this leave no way along the ridge between them.
 const FACING: f64 = 0.2;
 
+/// A piece of a level around something too thin for any voxel to lie in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Remain {
+    /// A point of the level, model units.
+    pub point: DVec3,
+    /// How thick it is there, model units.
+    pub thickness: f64,
+    /// How much of the level it stands for, square model units.
+    pub area: f64,
+}
+
 /// A level whose thin parts are looked for.
 pub(super) struct Search<'a> {
     /// What the distance is to.
@@ -66,9 +77,9 @@ struct Here {
 }
 
 impl Here {
-    /// The point of the level straight below `p`, where this is.
-    fn below(&self, p: DVec3) -> At {
-        At { point: p - self.up * self.over, up: self.up }
+    /// The point of the level straight below `p`, where this is, and a ridge is so far over the level.
+    fn below(&self, p: DVec3, ridge: f64) -> At {
+        At { point: p - self.up * self.over, up: self.up, thickness: 2.0 * ridge.max(0.0) }
     }
 }
 
@@ -76,11 +87,13 @@ impl Here {
 struct At {
     point: DVec3,
     up: DVec3,
+    /// From there to the other side of the ridge, model units.
+    thickness: f64,
 }
 
 impl Search<'_> {
-    /// Points of the level around parts of its side that lie between voxels, model units, in the order of the bricks.
-    pub(super) fn points(&self, progress: &Progress) -> Result<Vec<DVec3>, Stopped> {
+    /// What of the level's side lies between voxels, in the order of the bricks.
+    pub(super) fn remains(&self, progress: &Progress) -> Result<Vec<Remain>, Stopped> {
         let of_brick = |&brick: &IVec3| {
             progress.check()?;
             let voxels = (0..crate::lattice::BRICK_VOXELS).map(|n| BRICK * brick + voxel_in_brick(n));
@@ -92,7 +105,9 @@ impl Search<'_> {
         let mut taken = FxHashSet::default();
         let mut fresh =
             |at: &At| taken.insert(((at.point / side).floor().as_ivec3(), (at.up * 1.5).round().as_ivec3()));
-        Ok(found.into_iter().flatten().filter(|at| fresh(at)).map(|at| at.point).collect())
+        let area = (2.0 * side).powi(2);
+        let remain = |at: At| Remain { point: at.point, thickness: at.thickness, area };
+        Ok(found.into_iter().flatten().filter(|at| fresh(at)).map(remain).collect())
     }
 
     fn at_voxel(&self, voxel: IVec3) -> f64 {
@@ -157,14 +172,14 @@ impl Search<'_> {
             let (before, after) = match self.ridge(p, &here, 2.0 * room) {
                 Some(found) => found,
                 // It is so wide that the other side lies in another cell.
-                None if here.over >= 0.0 => return [Some(here.below(p)), None],
+                None if here.over >= 0.0 => return [Some(here.below(p, here.over)), None],
                 None => return nothing,
             };
             let beyond = p + here.up * after;
             let other = self.at(beyond);
             let over = here.over + before;
             if over >= -JUST * self.level.abs() {
-                return [Some(here.below(p)), Some(other.below(beyond))];
+                return [Some(here.below(p, over)), Some(other.below(beyond, over))];
             }
             let between = here.up + other.up;
             if between.length() < FACING {

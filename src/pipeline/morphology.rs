@@ -1,12 +1,11 @@
 //! Dilate, erode, close and open.
 
-use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::crumbs::without_made_crumbs;
 use super::frame::Frame;
-use super::plan::{Offsets, check_offsets};
+use super::plan::{Offsets, area, check_offsets};
 use super::{Error, Options, Outcome, TriangleSource, boolean, kind, prepare, refine, stages};
 use crate::digits;
 use crate::fit::{Facets, FitOptions, FitReport, Sides, Surface, Wanted, fit};
@@ -14,7 +13,7 @@ use crate::lattice::Lattice;
 use crate::ldi::{Evidence, Expression};
 use crate::mesh::{TriMesh, ValidateOptions, validate};
 use crate::morphology::{
-    Balls, Body, Centres, MorphologyError, Offset, Operation, Region, closed, offset, places, reached,
+    Balls, Body, Centres, MorphologyError, Offset, Operation, Region, Remain, closed, offset, places, reached,
 };
 use crate::progress::Progress;
 use crate::sdf::exact::{ExactDistance, PointSign};
@@ -52,6 +51,10 @@ pub struct MorphologyReport {
     pub too_thin: usize,
     /// One of them, model units.
     pub thin_place: Option<[f64; 3]>,
+    /// Their part of the surface that there should be, 0 to 1.
+    pub thin_share: f64,
+    /// A voxel that would hold half of them, model units.
+    pub voxel_that_holds: Option<f64>,
 }
 
 /// Repairs `input` and dilates, erodes, closes or opens the solid.
@@ -85,8 +88,8 @@ pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progr
 /// sixteenth of a voxel.
 const VOXELS_OF_RADIUS: [f64; 2] = [1.0, 2.0];
 
-/// Thin remains let voxels be halved so often, at most, and not below this many along the model's longest side after the first time:
-/// the surface has four times as many each time.
+/// Thin remains let voxels be halved so often, at most, where that shows half of them, and not to more than this many along the model's
+/// longest side after the first time: the surface has four times as many each time.
 const MOST_HALVINGS: u32 = 3;
 const MOST_ALONG: f64 = 600.0;
 
@@ -129,8 +132,8 @@ pub(super) struct Made {
     fit: Option<FitReport>,
     /// The voxel it was made with, model units.
     h: f64,
-    /// Points of what no voxel shows and the surface does not have, model units.
-    too_thin: Vec<DVec3>,
+    /// What no voxel shows and the surface does not have.
+    too_thin: Vec<Remain>,
 }
 
 #[derive(Clone, Copy)]
@@ -149,18 +152,21 @@ impl Run<'_> {
         mut make: impl FnMut(&Self) -> Result<Made, Error>,
     ) -> Result<Made, Error> {
         let longest = super::prepare::bounds(std::slice::from_ref(self.solid))?.size().max_element();
+        let finest = (self.h / f64::from(1u32 << MOST_HALVINGS)).max((longest / MOST_ALONG).min(self.h / 2.0));
         let mut run = *self;
-        for halvings in 0.. {
+        loop {
             let made = make(&run)?;
-            let h = run.h / 2.0;
-            let is_too_fine = halvings > 0 && longest / h > MOST_ALONG;
-            if made.too_thin.is_empty() || halvings == MOST_HALVINGS || is_too_fine || !is_affordable(h) {
-                let all = made.surface.mesh.triangles.is_empty();
-                return if all { Err(self.all_too_thin(run.h)) } else { Ok(made) };
+            let shows = |&h: &f64| {
+                let held = made.too_thin.iter().filter(|remain| remain.thickness >= h).count();
+                held > 0 && 2 * held >= made.too_thin.len()
+            };
+            let finer = std::iter::successors(Some(run.h / 2.0), |h| Some(h / 2.0)).take_while(|&h| h >= finest);
+            match finer.take_while(|&h| is_affordable(h)).find(shows) {
+                Some(h) => run.h = h,
+                None if made.surface.mesh.triangles.is_empty() => return Err(self.all_too_thin(run.h)),
+                None => return Ok(made),
             }
-            run.h = h;
         }
-        unreachable!("the last halving returns")
     }
 
     pub(super) fn one_way(&self, body: &Body<'_>, level: f64, stages: &mut stages::Stages<'_>) -> Result<Made, Error> {
@@ -285,14 +291,14 @@ impl Run<'_> {
         Error::NothingEnclosed { reason }
     }
 
-    /// Those of the points that `surface` does not have.
-    fn left_out(&self, remains: &[DVec3], surface: &TriMesh) -> Vec<DVec3> {
+    /// Those that `surface` does not have.
+    fn left_out(&self, remains: &[Remain], surface: &TriMesh) -> Vec<Remain> {
         if remains.is_empty() {
             return Vec::new();
         }
         let distance = ExactDistance::of(surface, PointSign::Unsigned);
-        let is_there = |p: &DVec3| distance.within(*p, LEFT_OUT * self.h).is_some();
-        remains.par_iter().copied().filter(|p| !is_there(p)).collect()
+        let is_there = |remain: &Remain| distance.within(remain.point, LEFT_OUT * self.h).is_some();
+        remains.par_iter().copied().filter(|remain| !is_there(remain)).collect()
     }
 
     pub(super) fn finish(&self, solid: &Outcome, made: Made, stages: stages::Stages<'_>) -> Outcome {
@@ -311,7 +317,9 @@ impl Run<'_> {
             made: own.iter().filter(|own| own.is_none()).count(),
             voxel: h,
             too_thin: places(&too_thin, 2.0 * h),
-            thin_place: too_thin.first().map(DVec3::to_array),
+            thin_place: too_thin.first().map(|remain| remain.point.to_array()),
+            thin_share: thin_share(&too_thin, &mesh),
+            voxel_that_holds: median(too_thin.iter().map(|remain| remain.thickness)),
         });
         report.fit = fit;
         report.crumbs = report.crumbs.and(crumbs);
@@ -325,6 +333,18 @@ impl Run<'_> {
             MorphologyError::Distance(error) => Error::VoxelSize { reason: error.to_string() },
         }
     }
+}
+
+/// The part that is missing of a surface.
+fn thin_share(missing: &[Remain], surface: &TriMesh) -> f64 {
+    let missing: f64 = missing.iter().map(|remain| remain.area).sum();
+    if missing > 0.0 { missing / (missing + area(surface)) } else { 0.0 }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_unstable_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().filter(|&value| value > 0.0)
 }
 
 /// Cubic model units.
