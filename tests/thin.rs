@@ -137,7 +137,7 @@ fn a_sheet_beside_a_solid_grows_and_the_solid_stays() {
 
 #[test]
 fn a_thickness_that_the_lattice_cannot_hold_is_refused_with_the_voxel_that_can() {
-    for (least, says) in [(0.02, "a voxel of at most 0.005"), (0.0, "positive"), (f64::NAN, "positive")] {
+    for (least, says) in [(0.02, "a voxel of at most 0.005"), (0.0, "above zero"), (f64::NAN, "above zero")] {
         let options = ThickenOptions { least, side: SheetSide::Both, solid: Options::new(VoxelSize::Along(96)) };
         match thicken(&sheet(2), &options, &Progress::none()) {
             Err(Error::VoxelSize { reason }) => assert!(reason.contains(says), "{reason}"),
