@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use super::frame::Frame;
-use super::morphology::{Run, offset_voxel, usable};
-use super::plan::{Offsets, check_offsets};
+use super::morphology::{Run, checked_voxel, usable};
+use super::plan::Offsets;
 use super::{Error, MorphologyOptions, Options, Outcome, boolean, kind, stages};
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
@@ -64,11 +64,10 @@ pub fn canals(input: &TriMesh, options: &CanalOptions, progress: &Progress) -> R
     let radius = usable(options.max_diameter / 2.0)?;
     let frame = Frame::of(std::slice::from_ref(input), &options.solid);
     let input = &frame.local(std::slice::from_ref(input))[0];
-    check_offsets(input, &options.solid, Offsets { count: 2, radius, thin: false })?;
+    let h = checked_voxel(input, &options.solid, Offsets { count: 2, radius, thin: false })?;
     let solid = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let closing = MorphologyOptions { operation: Operation::Close, radius, mitre: None, solid: options.solid.clone() };
     let mut stages = stages::Stages::new(progress);
-    let h = offset_voxel(input, &closing)?;
     let run = Run { solid: &solid.mesh, h, options: &closing, progress };
 
     let body = Body::new(&solid.mesh, None);

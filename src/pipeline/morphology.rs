@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::crumbs::without_made_crumbs;
 use super::frame::Frame;
 use super::plan::{Offsets, area, check_offsets};
-use super::{Error, Options, Outcome, TriangleSource, boolean, kind, prepare, refine, stages};
+use super::{Error, Options, Outcome, TriangleSource, VoxelSize, boolean, kind, prepare, refine, stages};
 use crate::digits;
 use crate::fit::{Facets, FitOptions, FitReport, Sides, Surface, Wanted, fit};
 use crate::lattice::Lattice;
@@ -66,12 +66,15 @@ pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progr
     let radius = usable(options.radius)?;
     let frame = Frame::of(std::slice::from_ref(input), &options.solid);
     let input = &frame.local(std::slice::from_ref(input))[0];
-    check_offsets(input, &options.solid, Offsets { count: options.operation.offsets(), radius, thin: false })?;
+    let offsets = Offsets { count: options.operation.offsets(), radius, thin: false };
+    let h = checked_voxel(input, &options.solid, offsets)?;
     let outcome = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
     let mut stages = stages::Stages::new(progress);
-    let h = offset_voxel(input, options)?;
     let run = Run { solid: &outcome.mesh, h, options, progress };
-    let finer = |h: f64| is_affordable(input, options, h);
+    let finer = |h: f64| {
+        let finer = Options { voxel: VoxelSize::Length(h), ..options.solid.clone() };
+        check_offsets(input, &finer, offsets).is_ok()
+    };
     let made = match options.operation {
         Operation::Dilate | Operation::Erode => {
             let level = if options.operation == Operation::Dilate { radius } else { -radius };
@@ -96,27 +99,18 @@ const MOST_ALONG: f64 = 600.0;
 /// A place is left out where the surface is farther from it than this, h.
 const LEFT_OUT: f64 = 0.75;
 
-/// The voxel of the offsets, model units: the one that was asked for, halved until the radius has enough of them.
-pub(super) fn offset_voxel(input: &TriMesh, options: &MorphologyOptions) -> Result<f64, Error> {
-    let asked = prepare::spacing(&prepare::bounds(std::slice::from_ref(input))?, options.solid.voxel)?;
-    let most = options.radius / VOXELS_OF_RADIUS[options.operation.offsets() as usize - 1];
-    let mut h = asked;
-    while h > most {
-        h /= 2.0;
-    }
-    if h < asked {
-        let finer = Options { voxel: super::VoxelSize::Length(h), ..options.solid.clone() };
-        let offsets = Offsets { count: options.operation.offsets(), radius: options.radius, thin: false };
-        check_offsets(input, &finer, offsets)?;
-    }
-    Ok(h)
+/// The voxel of as many offsets, model units: the one that was asked for, halved until the radius has enough of them.
+pub(super) fn offset_voxel(input: &TriMesh, solid: &Options, offsets: Offsets) -> Result<f64, Error> {
+    let asked = prepare::spacing(&prepare::bounds(std::slice::from_ref(input))?, solid.voxel)?;
+    let most = offsets.radius / VOXELS_OF_RADIUS[offsets.count as usize - 1];
+    Ok(std::iter::successors(Some(asked), |h| Some(h / 2.0)).find(|&h| h <= most).unwrap_or(asked))
 }
 
-/// Whether offsets with voxels of `h` cost no more than may be.
-fn is_affordable(input: &TriMesh, options: &MorphologyOptions, h: f64) -> bool {
-    let finer = Options { voxel: super::VoxelSize::Length(h), ..options.solid.clone() };
-    let offsets = Offsets { count: options.operation.offsets(), radius: options.radius, thin: false };
-    check_offsets(input, &finer, offsets).is_ok()
+/// The same, or why so small ones cannot be.
+pub(super) fn checked_voxel(input: &TriMesh, solid: &Options, offsets: Offsets) -> Result<f64, Error> {
+    let h = offset_voxel(input, solid, offsets)?;
+    check_offsets(input, &Options { voxel: VoxelSize::Length(h), ..solid.clone() }, offsets)?;
+    Ok(h)
 }
 
 /// A radius, or why it is none.
@@ -242,7 +236,7 @@ impl Run<'_> {
     pub(super) fn lattice(&self, room: f64) -> Result<Lattice, Error> {
         let mut bounds = super::prepare::bounds(std::slice::from_ref(self.solid))?;
         (bounds.min, bounds.max) = (bounds.min - room, bounds.max + room);
-        super::prepare::lattice(&bounds, super::VoxelSize::Length(self.h))
+        super::prepare::lattice(&bounds, VoxelSize::Length(self.h))
     }
 
     fn fitted(

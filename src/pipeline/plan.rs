@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::apart::Apart;
 use super::frame::Frame;
+use super::morphology::offset_voxel;
 use super::survey::Survey;
 use super::{CanalOptions, Error, HollowOptions, MorphologyOptions, Options, Plan, ThickenOptions, VoxelSize, prepare};
 use crate::lattice::Lattice;
@@ -144,6 +145,12 @@ fn plan_with(operands: &[TriMesh], options: &Options, offsets: Offsets) -> Resul
     let operands = &*Frame::of(operands, options).local(operands);
     let bounds = prepare::bounds(operands)?;
     if offsets != Offsets::default() {
+        let options = match (offsets.thin, operands) {
+            (false, [input]) => {
+                &Options { voxel: VoxelSize::Length(offset_voxel(input, options, offsets)?), ..options.clone() }
+            }
+            _ => options,
+        };
         return Ok(Input::surveyed(operands).cost(&prepare::lattice(&bounds, options.voxel)?, options, offsets));
     }
     let h = prepare::spacing(&bounds, options.voxel)?;
