@@ -4,6 +4,9 @@ use super::summary::Row;
 use super::words::{self, UnitName};
 use crate::pipeline::{Dropped, MorphologyReport, Report};
 
+/// Missing surface that is less than this part of all is not worth a line: whatever grows thinner towards its rim ends between voxels.
+const WORTH_A_LINE: f64 = 1e-3;
+
 /// All of it, as rows of the summary.
 pub fn rows(pipeline: &Report, unit: UnitName<'_>) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
@@ -40,7 +43,7 @@ fn finer(change: &MorphologyReport, voxel: f64, unit: UnitName<'_>) -> Option<St
 }
 
 fn too_thin(change: &MorphologyReport, unit: UnitName<'_>) -> Option<String> {
-    let place = change.thin_place?.map(words::number).join(" ");
+    let place = change.thin_place.filter(|_| change.thin_share > WORTH_A_LINE)?.map(words::number).join(" ");
     let places = words::plural(change.too_thin, "place");
     let h = words::length(change.voxel, unit);
     let verb = if change.too_thin == 1 { "is" } else { "are" };

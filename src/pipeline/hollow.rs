@@ -6,7 +6,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::kind::counted;
-use super::morphology::{morphology, usable, volume};
+use super::morphology::{Voxels, usable, volume, with_voxels};
 use super::{Error, MorphologyOptions, Options, Outcome, TriangleSource, VoxelSize, boolean, prepare, stages};
 use crate::ldi::{Expression, Operands};
 use crate::mesh::{ClosestTree, Pseudonormals, TriMesh};
@@ -99,7 +99,7 @@ pub fn hollow(input: &TriMesh, options: &HollowOptions, progress: &Progress) -> 
             short(wall)
         ),
     };
-    let eroded = match morphology(&solid.mesh, &shrink, progress) {
+    let eroded = match with_voxels(&solid.mesh, &shrink, Voxels::OfRadius, progress) {
         Ok(outcome) => outcome.mesh,
         Err(Error::NothingEnclosed { .. }) => return Err(nothing()),
         Err(error) => return Err(error),

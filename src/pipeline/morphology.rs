@@ -63,6 +63,25 @@ pub struct MorphologyReport {
 /// Those of [`boolean`]; [`Error::NothingEnclosed`] when nothing is left; [`Error::VoxelSize`] for a radius that
 /// the lattice cannot hold.
 pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progress) -> Result<Outcome, Error> {
+    with_voxels(input, options, Voxels::AsNeeded, progress)
+}
+
+/// Which voxels an offset is made with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Voxels {
+    /// Those that were asked for, halved where they do not show what is left.
+    AsNeeded,
+    /// Those that the radius needs: what is thinner is not wanted.
+    OfRadius,
+}
+
+/// [`morphology`] with certain voxels.
+pub(super) fn with_voxels(
+    input: &TriMesh,
+    options: &MorphologyOptions,
+    voxels: Voxels,
+    progress: &Progress,
+) -> Result<Outcome, Error> {
     let radius = usable(options.radius)?;
     let frame = Frame::of(std::slice::from_ref(input), &options.solid);
     let input = &frame.local(std::slice::from_ref(input))[0];
@@ -73,7 +92,7 @@ pub fn morphology(input: &TriMesh, options: &MorphologyOptions, progress: &Progr
     let run = Run { solid: &outcome.mesh, h, options, progress };
     let finer = |h: f64| {
         let finer = Options { voxel: VoxelSize::Length(h), ..options.solid.clone() };
-        check_offsets(input, &finer, offsets).is_ok()
+        voxels == Voxels::AsNeeded && check_offsets(input, &finer, offsets).is_ok()
     };
     let made = match options.operation {
         Operation::Dilate | Operation::Erode => {
@@ -95,6 +114,10 @@ const VOXELS_OF_RADIUS: [f64; 2] = [1.0, 2.0];
 /// longest side after the first time: the surface has four times as many each time.
 const MOST_HALVINGS: u32 = 3;
 const MOST_ALONG: f64 = 600.0;
+
+/// Of the surface that there should be at least this part has to be missing for that: what grows thinner towards its rim always ends between
+/// voxels. Of an offset, and of what the solid itself has and a closing or opening must not lose.
+const WORTH: [f64; 2] = [0.01, 0.001];
 
 /// A place is left out where the surface is farther from it than this, h.
 const LEFT_OUT: f64 = 0.75;
@@ -154,6 +177,10 @@ impl Run<'_> {
                 let held = made.too_thin.iter().filter(|remain| remain.thickness >= h).count();
                 held > 0 && 2 * held >= made.too_thin.len()
             };
+            let worth = WORTH[self.options.operation.offsets() as usize - 1];
+            if !made.surface.mesh.triangles.is_empty() && thin_share(&made.too_thin, &made.surface.mesh) < worth {
+                return Ok(made);
+            }
             let finer = std::iter::successors(Some(run.h / 2.0), |h| Some(h / 2.0)).take_while(|&h| h >= finest);
             match finer.take_while(|&h| is_affordable(h)).find(shows) {
                 Some(h) => run.h = h,
