@@ -81,7 +81,7 @@ const VOTES_SECONDS: f64 = 0.2;
 /// Triangles of the result per h² of surface that is built anew.
 const TRIANGLES_PER_CELL: f64 = 2.2;
 /// Where most triangles stay, triangles besides those of the input: per h² of lids that lie in no plane, of others, and per triangle that touches
-/// others, whose surroundings are built anew. Of the 33 meshes of the data set at 256 voxels 29 come within a factor of 2.
+/// others, whose surroundings are built anew. Of the 33 meshes of the data set at 256 voxels 25 come within a factor of 2.
 const TRIANGLES_PER_LID_CELL: f64 = 1.0;
 const TRIANGLES_PER_FLAT_CELL: f64 = 0.2;
 const TRIANGLES_PER_CONTACT: f64 = 3.0;
