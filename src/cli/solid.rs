@@ -234,7 +234,8 @@ fn make(
         let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
         write(&outcome.mesh, paint, target, session, report)?;
     }
-    let beyond = limits::beyond_memory(report, args.max_memory);
+    let beyond: Vec<String> =
+        limits::guessed(report).into_iter().chain(limits::beyond_memory(report, args.max_memory)).collect();
     report.warnings.extend(beyond.iter().chain(lost.iter().filter(|_| !withheld)).cloned());
     report.seconds = session.start.elapsed().as_secs_f64();
     report.peak_memory_bytes = super::machine::peak_memory();
@@ -246,7 +247,7 @@ fn make(
         session.speak();
         return Err(keep::withheld(&lost, args.output.as_deref(), &doubts::better(report, name.as_deref())));
     }
-    Ok(if beyond.is_none() && lost.is_empty() { Exit::Done } else { Exit::Limit })
+    Ok(if beyond.is_empty() && lost.is_empty() { Exit::Done } else { Exit::Limit })
 }
 
 /// Writes the result and judges the written file.
