@@ -1,26 +1,27 @@
 //! The arguments of every verb.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 
 use super::backend::BackendChoice;
 use super::change::RemoveChoice;
-use super::choices::{AnyFormat, Defect, EdgeChoice, MethodChoice, OrientChoice, SideChoice, SignChoice, VoteChoice};
+use super::choices::{Defect, EdgeChoice, MethodChoice, OrientChoice, SideChoice, SignChoice, VoteChoice};
 use super::decimate::DecimateArgs;
 use super::devices::DevicesArgs;
 use super::field_args::{FieldArgs, field_help};
 use super::hollow::HollowArgs;
 use super::keep::KeepArgs;
-use super::length::{BandChoice, Length, Simplify, parse_duration, parse_radius, parse_resolution, parse_size};
+use super::length::{BandChoice, Length, Simplify, parse_radius, parse_resolution, parse_size};
 use super::preset::Preset;
 use super::render::{ViewChoice, parse_view};
 use super::slice::SliceChoice;
 use super::split::SplitArgs;
 use super::transform::TransformArgs;
 use super::volume::Volume;
-use crate::io::{Format, GridFormat, Unit};
+use crate::io::GridFormat;
+
+pub use super::shared_args::{CommonArgs, InputArgs, OutputArgs};
 
 pub(super) const EXIT_CODES: &str = "\
 Exit status:
@@ -480,54 +481,6 @@ impl SolidArgs {
     pub fn keeps_partial(&self) -> bool {
         self.keeping.keep_partial || self.writing.force
     }
-}
-
-/// How inputs are read.
-#[derive(Debug, Clone, Args)]
-pub struct InputArgs {
-    /// Format of the input, when neither its content nor its name should decide
-    #[arg(long, value_name = "FORMAT")]
-    pub in_format: Option<Format>,
-    /// Unit of the numbers in files that carry none (STL, OBJ, PLY, OFF)
-    #[arg(long, value_name = "UNIT")]
-    pub unit: Option<Unit>,
-}
-
-/// How the output is written.
-#[derive(Debug, Clone, Args)]
-pub struct OutputArgs {
-    /// Format of the output, when its name should not decide
-    #[arg(long, value_name = "FORMAT")]
-    pub out_format: Option<AnyFormat>,
-    /// Text instead of binary, where the format has both (STL, PLY)
-    #[arg(long)]
-    pub ascii: bool,
-    /// Write over an input file
-    #[arg(long)]
-    pub force: bool,
-}
-
-/// Flags of every verb.
-#[derive(Debug, Clone, Args)]
-pub struct CommonArgs {
-    /// Threads to use [default: one for each core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// Give up after this time (30s, 5m)
-    #[arg(long, value_name = "DUR", value_parser = parse_duration)]
-    pub timeout: Option<Duration>,
-    /// Write a report of the run, as JSON, to this file
-    #[arg(long, value_name = "FILE.json")]
-    pub report: Option<PathBuf>,
-    /// Write the report, as JSON, to standard output
-    #[arg(long)]
-    pub json: bool,
-    /// Only errors on standard error
-    #[arg(short, long, conflicts_with = "verbose")]
-    pub quiet: bool,
-    /// More on standard error
-    #[arg(short, long)]
-    pub verbose: bool,
 }
 
 #[cfg(test)]

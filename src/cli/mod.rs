@@ -41,6 +41,7 @@ mod repair;
 mod report;
 mod sdf;
 mod session;
+mod shared_args;
 mod slice;
 mod solid;
 mod split;

@@ -151,6 +151,16 @@ impl Union {
         Self { parent: (0..size as u32).collect() }
     }
 
+    /// Vertices, joined where triangles connect them.
+    pub(crate) fn of_triangles(vertices: usize, triangles: impl IntoIterator<Item = [u32; 3]>) -> Self {
+        let mut union = Self::new(vertices);
+        for [a, b, c] in triangles {
+            union.join(a, b);
+            union.join(b, c);
+        }
+        union
+    }
+
     /// The smallest member of the set of `of`.
     pub(crate) fn root(&mut self, mut of: u32) -> u32 {
         while self.parent[of as usize] != of {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::offset::MARGIN;
-use super::{Body, MorphologyError, Remain};
+use super::{Body, MorphologyError, Remain, around};
 use crate::lattice::{BRICK_VOXELS, Grid, Lattice, Slot};
 use crate::mesh::edges::Union;
 use crate::mesh::{Plane, TriMesh};
@@ -45,11 +45,7 @@ impl Centres {
 
 /// For each triangle the number of all that hang together, or lie in cubes of `side` (model units) that touch.
 fn spaces(mesh: &TriMesh, side: f64) -> Vec<u32> {
-    let mut sets = Union::new(mesh.positions.len());
-    for &[a, b, c] in &mesh.triangles {
-        sets.join(a, b);
-        sets.join(b, c);
-    }
+    let mut sets = Union::of_triangles(mesh.positions.len(), mesh.triangles.iter().copied());
     join_near(&mut sets, &mesh.positions, side);
     mesh.triangles.iter().map(|t| sets.root(t[0])).collect()
 }
@@ -62,8 +58,7 @@ fn join_near(sets: &mut Union, points: &[DVec3], side: f64) {
         sets.join(v, other);
     }
     for (&cube, &v) in &first {
-        let beside = (0..27).map(|n| cube + IVec3::new(n % 3, n / 3 % 3, n / 9) - 1);
-        for &other in beside.filter_map(|cube| first.get(&cube)) {
+        for &other in around(cube).filter_map(|cube| first.get(&cube)) {
             sets.join(v, other);
         }
     }

@@ -21,6 +21,8 @@ pub use offset::{Body, Offset, offset};
 pub use remains::Remain;
 pub use thin::middles;
 
+use glam::IVec3;
+
 use crate::progress::Stopped;
 use crate::sdf::exact::ExactError;
 
@@ -66,4 +68,14 @@ impl From<ExactError> for MorphologyError {
             other => Self::Distance(other),
         }
     }
+}
+
+/// The 26 voxels around one.
+fn around(voxel: IVec3) -> impl Iterator<Item = IVec3> {
+    (0..27).filter(|&n| n != 13).map(move |n| voxel + IVec3::new(n % 3, n / 3 % 3, n / 9) - 1)
+}
+
+/// From the lowest corner of a cell to all eight.
+fn corners() -> impl Iterator<Item = IVec3> {
+    (0..8).map(|n| IVec3::new(n & 1, n >> 1 & 1, n >> 2))
 }

@@ -9,7 +9,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-use super::Body;
+use super::{Body, corners};
 use crate::lattice::{BRICK, Grid, Lattice};
 use crate::progress::{Progress, Stopped};
 use crate::vote::voxel_in_brick;
@@ -213,8 +213,4 @@ impl Search<'_> {
         }
         Some((before, after))
     }
-}
-
-fn corners() -> impl Iterator<Item = IVec3> {
-    (0..8).map(|n| IVec3::new(n & 1, n >> 1 & 1, n >> 2))
 }

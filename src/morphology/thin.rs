@@ -47,12 +47,8 @@ pub fn middles(body: &Body<'_>, least: f64, h: f64, progress: &Progress) -> Resu
         Ok(walls.behind(t))
     };
     let found: Vec<Behinds> = (0..body.mesh.triangles.len()).into_par_iter().map(of).collect::<Result<_, Stopped>>()?;
-    let mut whole = Union::new(body.mesh.positions.len());
     let thin = || found.iter().zip(&body.mesh.triangles).filter(|(behind, _)| behind.area > 0.0);
-    for (_, &[a, b, c]) in thin() {
-        whole.join(a, b);
-        whole.join(b, c);
-    }
+    let mut whole = Union::of_triangles(body.mesh.positions.len(), thin().map(|(_, &triangle)| triangle));
     let mut areas = vec![0.0; body.mesh.positions.len()];
     thin().for_each(|(behind, &[a, ..])| areas[whole.root(a) as usize] += behind.area);
     let (mut positions, mut area) = (Vec::new(), 0.0);

@@ -216,11 +216,8 @@ fn shell_of(soup: &Soup, shells: &Shells) -> Vec<Vec<Option<u32>>> {
 /// The number of parts, connected through vertices, of the triangles that are touched.
 fn places(mesh: &TriMesh, touched: &[bool]) -> usize {
     let triangles: Vec<[u32; 3]> = mesh.triangles.iter().zip(touched).filter(|t| *t.1).map(|t| *t.0).collect();
-    let mut union = Union::new(if triangles.is_empty() { 0 } else { mesh.positions.len() });
-    triangles.iter().for_each(|&[a, b, c]| {
-        union.join(a, b);
-        union.join(b, c);
-    });
+    let vertices = if triangles.is_empty() { 0 } else { mesh.positions.len() };
+    let mut union = Union::of_triangles(vertices, triangles.iter().copied());
     let mut roots: Vec<u32> = triangles.iter().map(|t| union.root(t[0])).collect();
     roots.sort_unstable();
     roots.dedup();

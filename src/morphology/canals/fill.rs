@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick};
 use crate::mesh::edges::Union;
 use crate::morphology::closed::{own_distance, unchanged};
-use crate::morphology::{Balls, Body, MorphologyError};
+use crate::morphology::{Balls, Body, MorphologyError, around};
 use crate::progress::Progress;
 use crate::vote::voxel_in_brick;
 
@@ -132,11 +132,6 @@ fn set(grid: &mut Grid<u32>, voxel: IVec3, value: u32) {
     if let Slot::Active(n) = grid.bricks.slot(brick_of(voxel)) {
         grid.values[n as usize][index_in_brick(voxel)] = value;
     }
-}
-
-/// The 26 voxels around one.
-pub(super) fn around(voxel: IVec3) -> impl Iterator<Item = IVec3> {
-    (0..27).filter(|&n| n != 13).map(move |n| voxel + IVec3::new(n % 3, n / 3 % 3, n / 9) - 1)
 }
 
 /// The 6 voxels that share a face with one.

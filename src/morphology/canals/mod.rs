@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::closed::{BESIDE, samples};
-use super::{Balls, Body, Centres, MorphologyError};
+use super::{Balls, Body, Centres, MorphologyError, corners};
 use crate::lattice::{Grid, Lattice};
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::Progress;
@@ -113,7 +113,7 @@ impl Region<'_> {
     /// Whether one of the voxels around `p` (lattice coordinates) is one of them.
     pub(super) fn is_beside(&self, p: DVec3) -> bool {
         let low = p.floor().as_ivec3();
-        (0..8).any(|n| self.holds(low + IVec3::new(n & 1, n >> 1 & 1, n >> 2)))
+        corners().any(|corner| self.holds(low + corner))
     }
 }
 

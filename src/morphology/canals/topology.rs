@@ -21,11 +21,7 @@ pub(super) struct Changes {
 
 /// For each triangle the number of its shell.
 pub(super) fn shells(mesh: &TriMesh) -> Vec<u32> {
-    let mut sets = Union::new(mesh.positions.len());
-    for &[a, b, c] in &mesh.triangles {
-        sets.join(a, b);
-        sets.join(b, c);
-    }
+    let mut sets = Union::of_triangles(mesh.positions.len(), mesh.triangles.iter().copied());
     mesh.triangles.iter().map(|t| sets.root(t[0])).collect()
 }
 
