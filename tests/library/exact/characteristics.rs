@@ -1,0 +1,189 @@
+//! Characteristics and scan conversion against the exact field.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use glam::{DVec3, IVec3};
+use meshwright::lattice::{Grid, Lattice};
+use meshwright::mesh::TriMesh;
+use meshwright::progress::{Progress, Stopped};
+use meshwright::sdf::characteristics::{characteristics, cost};
+use meshwright::sdf::exact::{Band, ExactError, ExactOptions, Sign, exact};
+use proptest::prelude::*;
+
+use super::shapes::{ball, closed, lattice, turned};
+
+fn options(band: Band) -> ExactOptions {
+    ExactOptions { band, max_memory: None }
+}
+
+fn field(mesh: &TriMesh, lattice: &Lattice, band: Band) -> Grid<f32> {
+    characteristics(mesh, lattice, &options(band), &Progress::none()).expect("a field")
+}
+
+/// Compares all voxels of all bricks of the lattice with the exact field; returns how many are in the band.
+fn compare(name: &str, mesh: &TriMesh, lattice: &Lattice, band: Band) -> usize {
+    let grid = field(mesh, lattice, band);
+    let truth = exact(mesh, lattice, Sign::Pseudonormal, &options(band), &Progress::none()).expect("a field");
+    assert_eq!((grid.inside, grid.outside), (truth.inside, truth.outside), "{name}");
+    let (end, width) = ((lattice.dims + 7) / 8 * 8, truth.outside);
+    let mut within = 0;
+    for n in 0..end.element_product() {
+        let v = IVec3::new(n % end.x, n / end.x % end.y, n / (end.x * end.y));
+        let (got, wanted) = (grid.get(v), truth.get(v));
+        assert!((got - wanted).abs() <= 1e-4, "{name}: {got} instead of {wanted} at {v}");
+        assert!((got < 0.0) == (wanted < 0.0) || wanted.abs() < 1e-6, "{name}: {got} instead of {wanted} at {v}");
+        within += usize::from(wanted.abs() < width);
+    }
+    // A brick may be stored by one of them only for a voxel at the very end of the band.
+    for (a, b) in [(&grid, &truth), (&truth, &grid)] {
+        for (&brick, values) in a.bricks.active().iter().zip(&a.values) {
+            let near = values.iter().map(|value| value.abs()).fold(f32::INFINITY, f32::min);
+            let both = b.bricks.active().binary_search_by_key(&(brick.z, brick.y, brick.x), |b| (b.z, b.y, b.x));
+            assert!(both.is_ok() || near > width - 1e-4, "{name}: brick {brick}, {near}");
+        }
+    }
+    within
+}
+
+#[test]
+fn hard_meshes_have_the_exact_field() {
+    for (name, mesh) in closed() {
+        let within = compare(name, &mesh, &lattice(&mesh, 1.0 / 30.0, 4), Band::Within(4.0));
+        assert!(within > 1000, "{name}: {within}");
+    }
+}
+
+#[test]
+fn real_meshes_have_the_exact_field() {
+    let clean = crate::common::data_folder().join("clean");
+    let saddle = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("testdata/monkey_saddle.off");
+    let knight = clean.join("decimated-knight.off");
+    for (path, band) in [(saddle, 6.4), (clean.join("fandisk.off"), 6.4), (knight, 3.0)] {
+        let mesh = crate::common::read(&path);
+        let h = mesh.bounds().expect("triangles").size().max_element() / 64.0;
+        let within = compare(&path.display().to_string(), &mesh, &lattice(&mesh, h, 7), Band::Within(band));
+        assert!(within > 10_000, "{}: {within}", path.display());
+    }
+}
+
+#[test]
+fn bands_of_any_width_and_none() {
+    let mesh = ball(3, |p| 0.5 + 0.1 * (7.0 * p.x).sin());
+    let around = lattice(&mesh, 1.0 / 20.0, 5);
+    let widths = [0.01, 1.0, 2.5, 9.0, 20.0, 400.0];
+    let counts: Vec<usize> = widths.iter().map(|&h| compare("ball", &mesh, &around, Band::Within(h))).collect();
+    assert!(counts.is_sorted() && counts[0] > 0, "{counts:?}");
+    let all = compare("ball", &mesh, &around, Band::Full);
+    assert_eq!(all, counts[5]);
+}
+
+#[test]
+fn a_lattice_that_cuts_the_body_or_misses_it() {
+    let mesh = turned(crate::common::shapes::torus(24, 12), 0.4);
+    let low = DVec3::new(0.4, -0.3, -0.2);
+    for (low, band) in
+        [(low, 3.0), (DVec3::new(0.95, -0.05, -0.1), 1.0), (DVec3::splat(2.0), 8.0), (DVec3::splat(9.0), 2.0)]
+    {
+        let small = Lattice { origin: low, h: 1.0 / 60.0, dims: IVec3::new(41, 33, 20) };
+        compare("torus", &mesh, &small, Band::Within(band));
+    }
+    let inside = Lattice { origin: DVec3::splat(-0.2), h: 0.01, dims: IVec3::splat(40) };
+    let grid = field(&ball(2, |_| 1.0), &inside, Band::Within(2.0));
+    assert_eq!(grid.bricks.len(), 0);
+    assert_eq!((grid.get(IVec3::ZERO), grid.get(IVec3::new(39, 20, 3))), (-2.0, -2.0));
+}
+
+#[test]
+fn a_vast_lattice_costs_no_more_than_the_band() {
+    let mesh = ball(2, |_| 1.0);
+    let h = 0.05;
+    let vast = Lattice { origin: DVec3::splat(-12_000.0 * h), h, dims: IVec3::splat(24_000) };
+    let grid = field(&mesh, &vast, Band::Within(3.0));
+    assert!(grid.bricks.len() <= 2 * field(&mesh, &lattice(&mesh, h, 6), Band::Within(3.0)).bricks.len());
+    assert_eq!((grid.get(IVec3::splat(12_000)), grid.get(IVec3::splat(11_000))), (-3.0, 3.0));
+}
+
+/// Where edges bend by no more than numbers are rounded, and lie on planes of voxels, no voxel falls between two towers.
+#[test]
+fn nearly_flat_edges_leave_no_gap() {
+    for bend in [0.0, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6] {
+        let tilt = |p: DVec3| p + DVec3::Z * if p.z > 0.0 { bend * (4.0 - p.x.abs() - p.y.abs()) } else { 0.0 };
+        let mut mesh = ball(4, |p| 4.0 / (p.abs().max_element()));
+        mesh.positions.iter_mut().for_each(|p| *p = tilt(*p));
+        // Voxels lie on the ridges x = 0 and y = 0.
+        let around = Lattice { origin: DVec3::splat(-10.0), h: 0.5, dims: IVec3::splat(41) };
+        compare(&format!("bend of {bend}"), &mesh, &around, Band::Within(12.0));
+    }
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let mesh = closed().swap_remove(3).1;
+    let around = lattice(&mesh, 1.0 / 40.0, 5);
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let grid = pool.install(|| field(&mesh, &around, Band::Within(12.0)));
+        let bits: Vec<u32> = grid.values.iter().flatten().map(|value| value.to_bits()).collect();
+        (grid.bricks, bits)
+    };
+    assert!(with(1) == with(3));
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let mesh = ball(2, |_| 1.0);
+    let around = lattice(&mesh, 0.05, 3);
+    let ask = |mesh: &TriMesh, lattice: &Lattice, band: Band, max_memory: Option<u64>| {
+        characteristics(mesh, lattice, &ExactOptions { band, max_memory }, &Progress::none()).map(drop)
+    };
+    let band = Band::Within(3.0);
+    assert_eq!(ask(&TriMesh::default(), &around, band, None), Err(ExactError::Empty));
+    assert_eq!(ask(&mesh, &around, Band::Within(-1.0), None), Err(ExactError::Band(-1.0)));
+    let none = Lattice { dims: IVec3::new(3, 0, 3), ..around };
+    assert!(matches!(ask(&mesh, &none, band, None), Err(ExactError::Lattice { .. })));
+    let needed = cost(&mesh, &around, band).memory;
+    assert_eq!(ask(&mesh, &around, band, Some(needed)), Ok(()));
+    let refused = Err(ExactError::Memory { needed, allowed: needed - 1 });
+    assert_eq!(ask(&mesh, &around, band, Some(needed - 1)), refused);
+    let stop = Progress::none().with_flag(Arc::new(AtomicBool::new(true)));
+    let stopped = characteristics(&mesh, &around, &options(band), &stop).map(drop);
+    assert_eq!(stopped, Err(ExactError::Stopped(Stopped::Interrupted)));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Star-shaped bodies with random radii, down to spikes and slivers.
+    #[test]
+    fn random_stars_have_the_exact_field(
+        radii in prop::collection::vec(prop_oneof![0.05..0.6f64, Just(0.4), 0.3..0.31f64], 66),
+        angle in 0.0..6.0f64,
+        h in 0.02..0.2f64,
+        width in 1.0..20.0f64,
+    ) {
+        let mut mesh = ball(2, |_| 1.0);
+        let radii = radii.iter().cycle().skip(1);
+        mesh.positions.iter_mut().zip(radii).for_each(|(p, radius)| *p *= *radius);
+        let mesh = turned(mesh, angle);
+        compare("star", &mesh, &lattice(&mesh, h, 2), Band::Within(width));
+    }
+}
+
+#[test]
+fn nearly_flat_ridges_of_a_thin_plate() {
+    let bend = 1e-8;
+    let ridge = |z: f64| {
+        let point = move |y: f64| [-4.3, 0.0, 4.3].map(|x: f64| DVec3::new(x, y, z + bend * (4.3 - x.abs())));
+        [point(-4.3), point(4.3)]
+    };
+    let positions = [ridge(1e-6), ridge(0.0)].into_iter().flatten().flatten().collect();
+    let mut triangles: Vec<[u32; 3]> = vec![[6, 0, 3], [6, 3, 9], [8, 5, 2], [8, 11, 5]];
+    for k in 0..2 {
+        triangles.extend([[k, k + 1, k + 4], [k, k + 4, k + 3], [6 + k, k + 10, k + 7], [6 + k, k + 9, k + 10]]);
+        triangles.extend([[6 + k, k + 7, k + 1], [6 + k, k + 1, k], [9 + k, k + 4, k + 10], [9 + k, k + 3, k + 4]]);
+    }
+    let mesh = TriMesh { positions, triangles };
+    let around = Lattice { origin: DVec3::splat(-10.0), h: 0.5, dims: IVec3::splat(41) };
+    compare("plate", &mesh, &around, Band::Within(12.0));
+}

@@ -1,0 +1,9 @@
+//! The exact distance: at points against looking at all triangles, over lattices against points.
+
+mod characteristics;
+mod lattices;
+mod levels;
+mod points;
+mod prism;
+mod shapes;
+mod soups;

@@ -1,0 +1,6 @@
+//! Fields: sources, algebra, filter, blends, blobs, blur, and their level sets.
+
+mod algebra;
+mod filter;
+mod sources;
+mod support;

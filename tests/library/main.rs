@@ -1,0 +1,28 @@
+//! The tests of the library, one module a stage or promise; one program, so that the library is linked once.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod closing;
+mod compare;
+mod contour;
+mod contour_support;
+mod decimate;
+mod exact;
+mod field;
+mod field_language;
+mod fit;
+#[cfg(feature = "gpu")]
+mod gpu;
+mod hollow;
+mod io;
+mod keep;
+mod mesh;
+mod morphology;
+mod rays;
+mod sdf;
+mod simplify;
+mod solid;
+mod standing;
+mod thin;
+mod vote;
