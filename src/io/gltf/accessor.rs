@@ -4,7 +4,7 @@ use gltf_json::accessor::{Accessor, ComponentType, IndexComponentType, Type};
 use gltf_json::validation::Checked;
 use gltf_json::{Index, Root};
 
-use super::super::error::{ReadError, ReadProblem};
+use super::super::error::{FileError, FileProblem};
 use super::super::soup::Expansion;
 use super::buffers::{Buffers, missing};
 
@@ -18,10 +18,10 @@ struct Fields<'a> {
 
 impl<'a> Fields<'a> {
     /// `count` fields of `size` bytes from byte `offset`, `stride` bytes apart.
-    fn new(bytes: &'a [u8], offset: u64, stride: Option<usize>, size: usize, count: u64) -> Result<Self, ReadProblem> {
+    fn new(bytes: &'a [u8], offset: u64, stride: Option<usize>, size: usize, count: u64) -> Result<Self, FileProblem> {
         let stride = stride.unwrap_or(size);
         if stride < size {
-            return Err(ReadProblem::syntax(format!("a stride of at least {size} bytes"), stride.to_string()));
+            return Err(FileProblem::syntax(format!("a stride of at least {size} bytes"), stride.to_string()));
         }
         let all =
             count.checked_sub(1).map_or(Some(0), |gaps| gaps.checked_mul(stride as u64)?.checked_add(size as u64));
@@ -32,7 +32,7 @@ impl<'a> Fields<'a> {
             }
             _ => {
                 let expected = format!("{count} values of {size} bytes from byte {offset}");
-                Err(ReadProblem::truncated(expected, format!("the buffer view has {} bytes", bytes.len())))
+                Err(FileProblem::truncated(expected, format!("the buffer view has {} bytes", bytes.len())))
             }
         }
     }
@@ -43,9 +43,9 @@ impl<'a> Fields<'a> {
     }
 }
 
-fn accessor(root: &Root, index: Index<Accessor>) -> Result<&Accessor, ReadError> {
+fn accessor(root: &Root, index: Index<Accessor>) -> Result<&Accessor, FileError> {
     let count = root.accessors.len();
-    root.get(index).ok_or_else(|| ReadError::new(missing(index.value(), count, "accessors")))
+    root.get(index).ok_or_else(|| FileError::new(missing(index.value(), count, "accessors")))
 }
 
 fn item(index: Index<Accessor>) -> String {
@@ -58,12 +58,12 @@ pub(super) fn positions(
     buffers: &Buffers<'_>,
     index: Index<Accessor>,
     allowance: &mut Expansion,
-) -> Result<Vec<[f64; 3]>, ReadError> {
-    let fail = |problem| ReadError::item(item(index), problem);
+) -> Result<Vec<[f64; 3]>, FileError> {
+    let fail = |problem| FileError::item(item(index), problem);
     let accessor = accessor(root, index)?;
     let kind = component_type(accessor).map_err(fail)?;
     if !matches!(accessor.type_, Checked::Valid(Type::Vec3)) {
-        return Err(fail(ReadProblem::syntax("positions of type VEC3", "another type")));
+        return Err(fail(FileProblem::syntax("positions of type VEC3", "another type")));
     }
     let normalized = accessor.normalized;
     let decode = |field: &[u8]| {
@@ -82,8 +82,8 @@ pub(super) fn colours(
     buffers: &Buffers<'_>,
     index: Index<Accessor>,
     allowance: &mut Expansion,
-) -> Result<Vec<[f32; 4]>, ReadError> {
-    let fail = |problem| ReadError::item(item(index), problem);
+) -> Result<Vec<[f32; 4]>, FileError> {
+    let fail = |problem| FileError::item(item(index), problem);
     let accessor = accessor(root, index)?;
     let kind = component_type(accessor).map_err(fail)?;
     let channels = match (&accessor.type_, kind) {
@@ -91,7 +91,7 @@ pub(super) fn colours(
         (Checked::Valid(Type::Vec4), ComponentType::F32 | ComponentType::U8 | ComponentType::U16) => 4,
         _ => {
             let expected = "colours of type VEC3 or VEC4 in floats or unsigned integers of 8 or 16 bits";
-            return Err(fail(ReadProblem::syntax(expected, "another type")));
+            return Err(fail(FileProblem::syntax(expected, "another type")));
         }
     };
     let decode = |field: &[u8]| {
@@ -113,12 +113,12 @@ pub(super) fn coordinates(
     buffers: &Buffers<'_>,
     index: Index<Accessor>,
     allowance: &mut Expansion,
-) -> Result<Vec<[f32; 2]>, ReadError> {
-    let fail = |problem| ReadError::item(item(index), problem);
+) -> Result<Vec<[f32; 2]>, FileError> {
+    let fail = |problem| FileError::item(item(index), problem);
     let accessor = accessor(root, index)?;
     let kind = component_type(accessor).map_err(fail)?;
     if !matches!(accessor.type_, Checked::Valid(Type::Vec2)) {
-        return Err(fail(ReadProblem::syntax("coordinates of type VEC2", "another type")));
+        return Err(fail(FileProblem::syntax("coordinates of type VEC2", "another type")));
     }
     let normalized = accessor.normalized;
     let decode = |field: &[u8]| {
@@ -138,13 +138,13 @@ pub(super) fn instance_values(
     index: Index<Accessor>,
     width: usize,
     allowance: &mut Expansion,
-) -> Result<Vec<[f64; 4]>, ReadError> {
-    let fail = |problem| ReadError::item(item(index), problem);
+) -> Result<Vec<[f64; 4]>, FileError> {
+    let fail = |problem| FileError::item(item(index), problem);
     let accessor = accessor(root, index)?;
     let kind = component_type(accessor).map_err(fail)?;
     let wanted = if width == 4 { Type::Vec4 } else { Type::Vec3 };
     if !matches!(&accessor.type_, Checked::Valid(found) if *found == wanted) {
-        return Err(fail(ReadProblem::syntax(format!("values of type VEC{width} for instances"), "another type")));
+        return Err(fail(FileProblem::syntax(format!("values of type VEC{width} for instances"), "another type")));
     }
     // Rotations in integers must be normalised; a file that forgets to say so can mean nothing else.
     let normalized = accessor.normalized || width == 4;
@@ -163,10 +163,10 @@ pub(super) fn count(root: &Root, index: Index<Accessor>) -> usize {
     root.get(index).map_or(0, |accessor| usize::try_from(accessor.count.0).unwrap_or(usize::MAX))
 }
 
-fn component_type(accessor: &Accessor) -> Result<ComponentType, ReadProblem> {
+fn component_type(accessor: &Accessor) -> Result<ComponentType, FileProblem> {
     match &accessor.component_type {
         Checked::Valid(kind) => Ok(kind.0),
-        Checked::Invalid => Err(ReadProblem::syntax("a component type", "another value")),
+        Checked::Invalid => Err(FileProblem::syntax("a component type", "another value")),
     }
 }
 
@@ -187,8 +187,8 @@ fn vectors<T: Copy>(
     index: Index<Accessor>,
     shape: Shape<T, impl Fn(&[u8]) -> T>,
     allowance: &mut Expansion,
-) -> Result<Vec<T>, ReadError> {
-    let fail = |problem| ReadError::item(item(index), problem);
+) -> Result<Vec<T>, FileError> {
+    let fail = |problem| FileError::item(item(index), problem);
     let accessor = accessor(root, index)?;
     let Shape { size, zero, decode } = shape;
     let count = accessor.count.0;
@@ -223,12 +223,12 @@ pub(super) fn indices(
     buffers: &Buffers<'_>,
     index: Index<Accessor>,
     allowance: &mut Expansion,
-) -> Result<Vec<u32>, ReadError> {
-    let fail = |problem| ReadError::item(item(index), problem);
+) -> Result<Vec<u32>, FileError> {
+    let fail = |problem| FileError::item(item(index), problem);
     let accessor = accessor(root, index)?;
     let (Some(view), None, Checked::Valid(Type::Scalar)) = (accessor.buffer_view, &accessor.sparse, &accessor.type_)
     else {
-        return Err(fail(ReadProblem::syntax("scalar indices in a buffer view", "another kind of accessor")));
+        return Err(fail(FileProblem::syntax("scalar indices in a buffer view", "another kind of accessor")));
     };
     let kind = match &accessor.component_type {
         Checked::Valid(kind) => Checked::Valid(IndexComponentType(kind.0)),
@@ -245,10 +245,10 @@ fn integers(
     stride: Option<usize>,
     kind: &Checked<IndexComponentType>,
     count: u64,
-) -> Result<Vec<u32>, ReadProblem> {
+) -> Result<Vec<u32>, FileProblem> {
     use ComponentType::{U8, U16, U32};
     let Checked::Valid(IndexComponentType(kind @ (U8 | U16 | U32))) = *kind else {
-        return Err(ReadProblem::syntax("indices of an unsigned integer type", "another type"));
+        return Err(FileProblem::syntax("indices of an unsigned integer type", "another type"));
     };
     let fields = Fields::new(bytes, offset, stride, kind.size(), count)?;
     Ok(fields.iter().map(|field| component(field, kind, false) as u32).collect())

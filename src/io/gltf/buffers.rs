@@ -9,7 +9,7 @@ use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf_json::{Index, Root, buffer::View};
 
-use super::super::error::{ReadError, ReadProblem};
+use super::super::error::{FileError, FileProblem};
 use super::super::text::quoted;
 use super::super::texture::{MOST_BESIDE, file_beside, read_beside};
 
@@ -27,13 +27,13 @@ pub(super) struct Buffers<'a> {
 }
 
 impl<'a> Buffers<'a> {
-    pub(super) fn load(root: &Root, binary: Option<&'a [u8]>, path: Option<&Path>) -> Result<Self, ReadError> {
+    pub(super) fn load(root: &Root, binary: Option<&'a [u8]>, path: Option<&Path>) -> Result<Self, FileError> {
         let mut contents = vec![Cow::Borrowed(binary.unwrap_or_default())];
         let mut buffers = Vec::with_capacity(root.buffers.len());
         let mut known = BTreeMap::new();
         let mut left = MOST_BESIDE;
         for (i, buffer) in root.buffers.iter().enumerate() {
-            let place = |problem| ReadError::item(format!("buffers[{i}]"), problem);
+            let place = |problem| FileError::item(format!("buffers[{i}]"), problem);
             let content = match &buffer.uri {
                 None if i == 0 => 0,
                 // Without a URI only the first buffer has bytes; extensions use such buffers.
@@ -65,9 +65,9 @@ impl<'a> Buffers<'a> {
     }
 
     /// The bytes of a buffer view and its stride.
-    pub(super) fn view(&self, root: &Root, view: Index<View>) -> Result<(&[u8], Option<usize>), ReadError> {
+    pub(super) fn view(&self, root: &Root, view: Index<View>) -> Result<(&[u8], Option<usize>), FileError> {
         let item = format!("bufferViews[{}]", view.value());
-        let fail = |problem| ReadError::item(item.clone(), problem);
+        let fail = |problem| FileError::item(item.clone(), problem);
         let view =
             root.get(view).ok_or_else(|| fail(missing(view.value(), root.buffer_views.len(), "buffer views")))?;
         let buffer = view.buffer.value();
@@ -79,55 +79,55 @@ impl<'a> Buffers<'a> {
         });
         let bytes = range.and_then(|range| self.contents[content].get(range)).ok_or_else(|| {
             let expected = format!("{} bytes from byte {start} of buffer {buffer}", view.byte_length.0);
-            fail(ReadProblem::truncated(expected, format!("there are {length}")))
+            fail(FileProblem::truncated(expected, format!("there are {length}")))
         })?;
         Ok((bytes, view.byte_stride.map(|stride| stride.0)))
     }
 }
 
 /// The problem of an index that leads nowhere.
-pub(super) fn missing(index: usize, count: usize, what: &'static str) -> ReadProblem {
-    ReadProblem::IndexOutOfRange { index: index as i64, count, what }
+pub(super) fn missing(index: usize, count: usize, what: &'static str) -> FileProblem {
+    FileProblem::IndexOutOfRange { index: index as i64, count, what }
 }
 
 /// What `uri` leads to: of a file at most the first `wanted` bytes, which are taken from those that are `left`.
-fn fetch(uri: &str, path: Option<&Path>, wanted: u64, left: &mut u64) -> Result<Vec<u8>, ReadProblem> {
+fn fetch(uri: &str, path: Option<&Path>, wanted: u64, left: &mut u64) -> Result<Vec<u8>, FileProblem> {
     if let Some(data) = uri.strip_prefix("data:") {
         return decoded_data(data);
     }
     let base = path.ok_or_else(|| {
         let uri = quoted(uri.as_bytes());
-        ReadProblem::Unsupported(format!(
+        FileProblem::Unsupported(format!(
             "the buffer {uri} lies in another file, which a stream does not give; read it from its place, or use GLB"
         ))
     })?;
     let elsewhere = || {
         let uri = quoted(uri.as_bytes());
-        ReadProblem::Unsupported(format!(
+        FileProblem::Unsupported(format!(
             "the buffer {uri} is not a file in the folder of the glTF file, and is not read"
         ))
     };
     let decoded = String::from_utf8(percent_decoded(uri)).map_err(|_| elsewhere())?;
     let file = file_beside(&decoded, base).ok_or_else(elsewhere)?;
     let failed = |e: std::io::Error| {
-        ReadProblem::Io(std::io::Error::new(e.kind(), format!("{}: {}", file.display(), plain(&e))))
+        FileProblem::Io(std::io::Error::new(e.kind(), format!("{}: {}", file.display(), plain(&e))))
     };
     // Links are followed to where they lead, and must not lead out of the folder.
     let cap = wanted.min(*left);
     let bytes = read_beside(&file, base, cap).map_err(failed)?.ok_or_else(elsewhere)?;
     if wanted > cap && bytes.len() as u64 == cap {
-        return Err(ReadProblem::TooLarge { what: "bytes of the files beside the document", limit: MOST_BESIDE });
+        return Err(FileProblem::TooLarge { what: "bytes of the files beside the document", limit: MOST_BESIDE });
     }
     *left -= bytes.len() as u64;
     Ok(bytes)
 }
 
 /// What follows `data:` in a URI.
-pub(super) fn decoded_data(data: &str) -> Result<Vec<u8>, ReadProblem> {
+pub(super) fn decoded_data(data: &str) -> Result<Vec<u8>, FileProblem> {
     let (kind, data) =
-        data.split_once(',').ok_or_else(|| ReadProblem::syntax("a comma in a data URI", quoted(data.as_bytes())))?;
+        data.split_once(',').ok_or_else(|| FileProblem::syntax("a comma in a data URI", quoted(data.as_bytes())))?;
     match kind.ends_with(";base64") {
-        true => BASE64.decode(data).map_err(|e| ReadProblem::syntax("base64 data", e.to_string())),
+        true => BASE64.decode(data).map_err(|e| FileProblem::syntax("base64 data", e.to_string())),
         false => Ok(percent_decoded(data)),
     }
 }

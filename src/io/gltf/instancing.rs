@@ -6,7 +6,7 @@ use glam::{DMat4, DQuat, DVec3, DVec4};
 use gltf_json::{Index, Root};
 use serde::Deserialize;
 
-use super::super::error::{ReadError, ReadProblem};
+use super::super::error::{FileError, FileProblem};
 use super::super::soup::Expansion;
 use super::accessor;
 use super::buffers::Buffers;
@@ -72,7 +72,7 @@ impl Instancing {
         root: &Root,
         buffers: &Buffers<'_>,
         allowance: &mut Expansion,
-    ) -> Result<Option<Copies>, ReadError> {
+    ) -> Result<Option<Copies>, FileError> {
         let Some(attributes) = self.0.get(&node) else { return Ok(None) };
         let mut values = |index: Option<u32>, width: usize| {
             index.map(|index| accessor::instance_values(root, buffers, Index::new(index), width, allowance)).transpose()
@@ -83,8 +83,8 @@ impl Instancing {
         let counts: Vec<usize> = [&translations, &rotations, &scales].into_iter().flatten().map(Vec::len).collect();
         let count = counts.first().copied().unwrap_or_default();
         if let Some(other) = counts.iter().find(|other| **other != count) {
-            let problem = ReadProblem::syntax(format!("{count} values of each kind for {NAME}"), other.to_string());
-            return Err(ReadError::item(format!("nodes[{node}]"), problem));
+            let problem = FileProblem::syntax(format!("{count} values of each kind for {NAME}"), other.to_string());
+            return Err(FileError::item(format!("nodes[{node}]"), problem));
         }
         Ok(Some(Copies { translations, rotations, scales, count }))
     }

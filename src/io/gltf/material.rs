@@ -6,7 +6,7 @@ use gltf_json::mesh::Primitive;
 use gltf_json::validation::Checked;
 
 use super::super::colour::{Rgba, srgb_from_linear};
-use super::super::error::ReadProblem;
+use super::super::error::FileProblem;
 use super::buffers::missing;
 
 /// The colour of a material.
@@ -19,7 +19,7 @@ pub(super) struct Tint {
 
 impl Tint {
     /// The tint of the material of `primitive`; opaque white if it has none.
-    pub(super) fn of(root: &Root, primitive: &Primitive) -> Result<Self, ReadProblem> {
+    pub(super) fn of(root: &Root, primitive: &Primitive) -> Result<Self, FileProblem> {
         let Some(index) = primitive.material else { return Ok(Self::plain()) };
         let material = root.get(index).ok_or_else(|| missing(index.value(), root.materials.len(), "materials"))?;
         Ok(Self::of_material(material))

@@ -16,7 +16,7 @@ use gltf_json::Root;
 
 use self::buffers::Buffers;
 use self::instancing::Instancing;
-use super::error::{ReadError, ReadProblem};
+use super::error::{FileError, FileProblem};
 use super::soup::Expansion;
 use super::{Format, Loaded, Unit};
 
@@ -33,25 +33,25 @@ const OF_LOOKS: [&str; 7] =
     ["KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_", "EXT_lights_", "MSFT_texture_", "EXT_materials_"];
 
 /// Reads a glTF file in JSON.
-pub(super) fn read_json(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, ReadError> {
+pub(super) fn read_json(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, FileError> {
     let json = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     read_document(json, None, bytes.len(), path, Format::Gltf)
 }
 
 /// Reads a binary glTF file: a header and chunks, the JSON first.
-pub(super) fn read_glb(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, ReadError> {
+pub(super) fn read_glb(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, FileError> {
     let word = |at: usize| bytes.get(at..at + 4).and_then(|w| w.try_into().ok()).map(u32::from_le_bytes);
     let truncated = |expected: &str| {
         let found = format!("the file ends after {} bytes", bytes.len());
-        ReadError::byte(bytes.len(), ReadProblem::truncated(expected, found))
+        FileError::byte(bytes.len(), FileProblem::truncated(expected, found))
     };
     if !bytes.starts_with(MAGIC) {
         let found = super::text::quoted(&bytes[..bytes.len().min(4)]);
-        return Err(ReadError::byte(0, ReadProblem::syntax("`glTF`", found)));
+        return Err(FileError::byte(0, FileProblem::syntax("`glTF`", found)));
     }
     let version = word(4).ok_or_else(|| truncated("a version"))?;
     if version != 2 {
-        return Err(ReadError::byte(4, other_version(&format!("version {version}"))));
+        return Err(FileError::byte(4, other_version(&format!("version {version}"))));
     }
     let length = word(8).ok_or_else(|| truncated("a length"))? as usize;
     let whole = bytes.get(..length).ok_or_else(|| truncated(&format!("{length} bytes (bytes 8 to 11 say so)")))?;
@@ -66,7 +66,7 @@ pub(super) fn read_glb(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, Read
         }
         rest = after;
     }
-    let json = chunks[0].ok_or_else(|| ReadError::byte(12, ReadProblem::syntax("a JSON chunk", "none")))?;
+    let json = chunks[0].ok_or_else(|| FileError::byte(12, FileProblem::syntax("a JSON chunk", "none")))?;
     read_document(json, chunks[1], bytes.len(), path, Format::Glb)
 }
 
@@ -76,11 +76,11 @@ fn read_document(
     length: usize,
     path: Option<&Path>,
     format: Format,
-) -> Result<Loaded, ReadError> {
+) -> Result<Loaded, FileError> {
     // An empty object, two bytes, becomes hundreds of bytes in memory; in real files each has members.
     let (objects, limit) = (json.iter().filter(|&&b| b == b'{').count(), 1024 + json.len() / 8);
     if objects > limit {
-        return Err(ReadProblem::TooLarge { what: "JSON objects", limit: limit as u64 }.into());
+        return Err(FileProblem::TooLarge { what: "JSON objects", limit: limit as u64 }.into());
     }
     check_version(json)?;
     let root: Root = gltf_json::deserialize::from_slice(json).map_err(|e| not_gltf(&e))?;
@@ -105,7 +105,7 @@ struct StatedAsset {
 }
 
 /// Refuses documents of version 1, which are laid out otherwise throughout.
-fn check_version(json: &[u8]) -> Result<(), ReadError> {
+fn check_version(json: &[u8]) -> Result<(), FileError> {
     // What is no JSON at all is told by the reader of the whole.
     let Ok(stated) = serde_json::from_slice::<Stated>(json) else { return Ok(()) };
     let version = match stated.asset.and_then(|asset| asset.version) {
@@ -113,37 +113,37 @@ fn check_version(json: &[u8]) -> Result<(), ReadError> {
         Some(serde_json::Value::Number(version)) => format!("version {version}"),
         _ => "a document without a version, as version 1.0 has it,".to_owned(),
     };
-    if version.starts_with("version 2") { Ok(()) } else { Err(ReadError::item("asset", other_version(&version))) }
+    if version.starts_with("version 2") { Ok(()) } else { Err(FileError::item("asset", other_version(&version))) }
 }
 
-fn other_version(found: &str) -> ReadProblem {
-    ReadProblem::Unsupported(format!(
+fn other_version(found: &str) -> FileProblem {
+    FileProblem::Unsupported(format!(
         "glTF {found} is not read here, only version 2.0; convert it to glTF 2.0 or GLB, or export it again"
     ))
 }
 
 /// Refuses a document that requires an extension that is not read. Returns a sentence on those that concern looks alone.
-fn check_required(root: &Root) -> Result<Option<String>, ReadError> {
+fn check_required(root: &Root) -> Result<Option<String>, FileError> {
     let unread = |name: &&String| !READ.contains(&name.as_str());
     let of_looks = |name: &str| OF_LOOKS.iter().any(|start| name.starts_with(start));
     let unread: Vec<&str> = root.extensions_required.iter().filter(unread).map(String::as_str).collect();
     if let Some(name) = unread.iter().find(|name| !of_looks(name)) {
         let compressed = name.contains("compression");
         let why = if compressed { "its mesh data is compressed and" } else { "it" };
-        let problem = ReadProblem::Unsupported(format!(
+        let problem = FileProblem::Unsupported(format!(
             "{why} requires the extension {}, which is not read here; export without it",
             super::text::quoted(name.as_bytes())
         ));
-        return Err(ReadError::item("extensionsRequired", problem));
+        return Err(FileError::item("extensionsRequired", problem));
     }
     Ok((!unread.is_empty()).then(|| format!("required extensions on looks left out: {}", unread.join(", "))))
 }
 
-fn not_gltf(error: &gltf_json::Error) -> ReadError {
+fn not_gltf(error: &gltf_json::Error) -> FileError {
     let found = error.to_string();
     match error.line() {
-        0 => ReadError::new(ReadProblem::syntax("glTF in JSON", found)),
-        line => ReadError::line(line, ReadProblem::syntax("glTF in JSON", found)),
+        0 => FileError::new(FileProblem::syntax("glTF in JSON", found)),
+        line => FileError::line(line, FileProblem::syntax("glTF in JSON", found)),
     }
 }
 

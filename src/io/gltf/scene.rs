@@ -10,8 +10,9 @@ use gltf_json::scene::Node;
 use gltf_json::validation::Checked;
 use gltf_json::{Index, Root};
 
-use super::super::error::{ReadError, ReadProblem};
-use super::super::soup::{Expansion, Soup, counted, too_many_vertices};
+use super::super::error::{FileError, FileProblem};
+use super::super::soup::{Expansion, Soup, too_many_vertices};
+use super::super::text::counted;
 use super::accessor;
 use super::buffers::{Buffers, missing};
 use super::instancing::Instancing;
@@ -26,7 +27,7 @@ pub(super) fn read(
     buffers: &Buffers<'_>,
     allowance: &mut Expansion,
     path: Option<&Path>,
-) -> Result<Soup, ReadError> {
+) -> Result<Soup, FileError> {
     let mut reader = Reader {
         root,
         instancing,
@@ -51,10 +52,10 @@ pub(super) fn read(
 }
 
 /// The nodes to start from; `None` when the file has no nodes.
-fn tops(root: &Root) -> Result<Option<Vec<Index<Node>>>, ReadError> {
+fn tops(root: &Root) -> Result<Option<Vec<Index<Node>>>, FileError> {
     if let Some(scene) = root.scene {
         let problem = || missing(scene.value(), root.scenes.len(), "scenes");
-        let scene = root.get(scene).ok_or_else(|| ReadError::item("scene", problem()))?;
+        let scene = root.get(scene).ok_or_else(|| FileError::item("scene", problem()))?;
         return Ok(Some(scene.nodes.clone()));
     }
     if let Some(scene) = root.scenes.first() {
@@ -98,16 +99,16 @@ struct Shared {
 impl Reader<'_, '_> {
     /// Walks the trees under `tops` depth first. A node has one parent at most, so a node met
     /// twice is an error; that also ends cycles.
-    fn nodes(&mut self, tops: Vec<Index<Node>>) -> Result<(), ReadError> {
+    fn nodes(&mut self, tops: Vec<Index<Node>>) -> Result<(), FileError> {
         let mut met = vec![false; self.root.nodes.len()];
         let mut stack: Vec<_> = tops.into_iter().rev().map(|top| (top, DMat4::IDENTITY)).collect();
         while let Some((index, parent)) = stack.pop() {
             let i = index.value();
-            let fail = |problem| ReadError::item(format!("nodes[{i}]"), problem);
+            let fail = |problem| FileError::item(format!("nodes[{i}]"), problem);
             let count = self.root.nodes.len();
             let node = self.root.get(index).ok_or_else(|| fail(missing(i, count, "nodes")))?;
             if std::mem::replace(&mut met[i], true) {
-                return Err(fail(ReadProblem::syntax("a tree of nodes", "a node that is reached twice")));
+                return Err(fail(FileProblem::syntax("a tree of nodes", "a node that is reached twice")));
             }
             let place = parent * local_transform(node);
             if let Some(mesh) = node.mesh {
@@ -123,9 +124,9 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    fn mesh(&mut self, index: Index<Mesh>, name: &str, place: &DMat4) -> Result<(), ReadError> {
+    fn mesh(&mut self, index: Index<Mesh>, name: &str, place: &DMat4) -> Result<(), FileError> {
         let i = index.value();
-        let fail = |problem| ReadError::item(format!("meshes[{i}]"), problem);
+        let fail = |problem| FileError::item(format!("meshes[{i}]"), problem);
         let mesh = self.root.get(index).ok_or_else(|| fail(missing(i, self.root.meshes.len(), "meshes")))?;
         self.used[i] = true;
         // Counted even when there is nothing in it, so that the work is bounded too.
@@ -141,7 +142,7 @@ impl Reader<'_, '_> {
                 continue;
             };
             self.posed += usize::from(primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()));
-            self.primitive(primitive, mode, place, &mut shared).map_err(|e| match e.place {
+            self.primitive(primitive, mode, place, &mut shared).map_err(|e| match e.location {
                 Some(_) => e,
                 None => fail(*e.problem),
             })?;
@@ -166,7 +167,7 @@ impl Reader<'_, '_> {
         mode: Mode,
         place: &DMat4,
         shared: &mut Shared,
-    ) -> Result<(), ReadError> {
+    ) -> Result<(), FileError> {
         let Some(&positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
             self.other_primitives += 1;
             return Ok(());
@@ -188,7 +189,7 @@ impl Reader<'_, '_> {
         };
         if let Some(&index) = indices.iter().find(|&&v| v as usize >= count) {
             let item = primitive.indices.map_or(0, |indices| indices.value());
-            return Err(ReadError::item(format!("accessors[{item}]"), ReadProblem::vertex(i64::from(index), count)));
+            return Err(FileError::item(format!("accessors[{item}]"), FileProblem::vertex(i64::from(index), count)));
         }
         let corners: Vec<u32> = indices.into_iter().map(|v| v + first).collect();
         let start = self.soup.triangles.len();
@@ -206,7 +207,7 @@ impl Reader<'_, '_> {
     }
 
     /// Colours the triangles from number `start` on, whose vertices are counted from `first`.
-    fn paint(&mut self, primitive: &Primitive, start: usize, first: u32, shared: &mut Shared) -> Result<(), ReadError> {
+    fn paint(&mut self, primitive: &Primitive, start: usize, first: u32, shared: &mut Shared) -> Result<(), FileError> {
         let mut tint = Tint::of(self.root, primitive)?;
         if self.looks.keeps_colours {
             tint = Tint::plain();
@@ -230,8 +231,8 @@ impl Reader<'_, '_> {
         };
         if let Some(v) = triangles.iter().flatten().map(|v| v - first).find(|&v| v as usize >= colours.len()) {
             let expected = format!("a colour for vertex {v}");
-            let problem = ReadProblem::truncated(expected, format!("there are {}", counted(colours.len(), "colour")));
-            return Err(ReadError::item(format!("accessors[{}]", index.value()), problem));
+            let problem = FileProblem::truncated(expected, format!("there are {}", counted(colours.len(), "colour")));
+            return Err(FileError::item(format!("accessors[{}]", index.value()), problem));
         }
         let corners = |t: &[u32; 3]| t.map(|v| tint.applied_to(colours[(v - first) as usize], odd));
         soup.colours.paint(start, triangles.iter().map(corners));
@@ -240,7 +241,7 @@ impl Reader<'_, '_> {
     }
 
     /// The transformed vertices of an accessor: the number of the first and how many.
-    fn vertices(&mut self, index: Index<gltf_json::Accessor>, place: &DMat4) -> Result<(u32, usize), ReadError> {
+    fn vertices(&mut self, index: Index<gltf_json::Accessor>, place: &DMat4) -> Result<(u32, usize), FileError> {
         let points = accessor::positions(self.root, self.buffers, index, self.allowance)?;
         let first = self.soup.positions.len();
         if first + points.len() > u32::MAX as usize {

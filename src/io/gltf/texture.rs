@@ -9,7 +9,8 @@ use gltf_json::mesh::{Primitive, Semantic};
 use gltf_json::validation::Checked;
 use gltf_json::{Index, Root};
 
-use super::super::soup::{Expansion, Soup, counted};
+use super::super::soup::{Expansion, Soup};
+use super::super::text::counted;
 use super::super::texture::Gallery;
 use super::accessor;
 use super::buffers::{Buffers, decoded_data, percent_decoded};

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::super::soup::{Soup, counted};
-use super::super::text::{Lines, Words, integer, quoted, single};
+use super::super::soup::Soup;
+use super::super::text::{Lines, Words, counted, integer, quoted, single};
 use super::super::texture::{Gallery, Woven};
 use crate::io::Material;
 

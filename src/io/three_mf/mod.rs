@@ -17,12 +17,12 @@ use self::model::{Model, Property};
 use self::package::Package;
 use self::roles::Roles;
 use super::colour::Rgba;
-use super::error::ReadError;
+use super::error::FileError;
 use super::{Format, Loaded, TexCoords};
 
 pub(super) use write::write;
 
-pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
+pub(super) fn read(bytes: &[u8]) -> Result<Loaded, FileError> {
     let mut package = Package::open(bytes)?;
     let root = package.root_model()?;
     let roles = Roles::read(&mut package);
@@ -56,12 +56,12 @@ struct Models<'a> {
 }
 
 impl Models<'_> {
-    fn load(&mut self, name: &str) -> Result<usize, ReadError> {
+    fn load(&mut self, name: &str) -> Result<usize, FileError> {
         if let Some(&known) = self.known.get(name) {
             return Ok(known);
         }
         let model = self.package.read_model(name)?;
-        model.extensions.check().map_err(|problem| ReadError::item(name, problem))?;
+        model.extensions.check().map_err(|problem| FileError::item(name, problem))?;
         self.loaded.push(model);
         self.known.insert(name.to_owned(), self.loaded.len() - 1);
         Ok(self.loaded.len() - 1)
