@@ -28,11 +28,7 @@ pub(super) struct Buffers<'a> {
 }
 
 impl<'a> Buffers<'a> {
-    pub(super) fn load(
-        document: &Document,
-        binary: Option<&'a [u8]>,
-        path: Option<&Path>,
-    ) -> Result<Self, FileError> {
+    pub(super) fn load(document: &Document, binary: Option<&'a [u8]>, path: Option<&Path>) -> Result<Self, FileError> {
         let declared = &document.as_json().buffers;
         let mut contents = vec![Cow::Borrowed(binary.unwrap_or_default())];
         let mut buffers = Vec::with_capacity(declared.len());
@@ -75,10 +71,8 @@ impl<'a> Buffers<'a> {
         let fail = |problem| FileError::item(format!("bufferViews[{index}]"), problem);
         let view = checked::view(document, index).map_err(fail)?;
         let buffer = view.buffer().index();
-        let &(content, length) = self
-            .buffers
-            .get(buffer)
-            .ok_or_else(|| fail(checked::missing(buffer, self.buffers.len(), "buffers")))?;
+        let &(content, length) =
+            self.buffers.get(buffer).ok_or_else(|| fail(checked::missing(buffer, self.buffers.len(), "buffers")))?;
         let range = view.offset()..view.offset().saturating_add(view.length());
         let bytes = self.contents[content][..length].get(range).ok_or_else(|| {
             let expected = format!("{} bytes from byte {} of buffer {buffer}", view.length(), view.offset());

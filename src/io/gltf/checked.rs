@@ -26,9 +26,9 @@ fn nth<T>(mut list: impl ExactSizeIterator<Item = T>, index: usize, what: &'stat
 /// The scene that is to be shown: the default one, else the first; `None` when there is none.
 pub(super) fn scene(document: &Document) -> Result<Option<Scene<'_>>, FileError> {
     match document.as_json().scene {
-        Some(scene) => {
-            nth(document.scenes(), scene.value(), "scenes").map(Some).map_err(|problem| FileError::item("scene", problem))
-        }
+        Some(scene) => nth(document.scenes(), scene.value(), "scenes")
+            .map(Some)
+            .map_err(|problem| FileError::item("scene", problem)),
         None => Ok(document.scenes().next()),
     }
 }
@@ -84,7 +84,10 @@ pub(super) fn dimensions(document: &Document, accessor: &Accessor<'_>) -> Option
 }
 
 /// The sparse part of an accessor, whose numbers of views may lead nowhere.
-pub(super) fn sparse<'a>(document: &'a Document, accessor: &Accessor<'_>) -> Option<&'a json::accessor::sparse::Sparse> {
+pub(super) fn sparse<'a>(
+    document: &'a Document,
+    accessor: &Accessor<'_>,
+) -> Option<&'a json::accessor::sparse::Sparse> {
     document.as_json().accessors.get(accessor.index())?.sparse.as_ref()
 }
 

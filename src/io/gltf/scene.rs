@@ -148,13 +148,7 @@ impl<'a> Reader<'a, '_> {
         }
     }
 
-    fn primitive(
-        &mut self,
-        part: &Part<'a>,
-        mode: Mode,
-        place: &DMat4,
-        shared: &mut Shared,
-    ) -> Result<(), FileError> {
+    fn primitive(&mut self, part: &Part<'a>, mode: Mode, place: &DMat4, shared: &mut Shared) -> Result<(), FileError> {
         let Some(positions) = part.attribute(Semantic::Positions)? else {
             self.other_primitives += 1;
             return Ok(());

@@ -146,7 +146,8 @@ impl<'a> Looks<'a> {
             None => Err("it has neither bytes nor a file".into()),
         };
         let number = image.index();
-        let name = image.name().filter(|name| !name.is_empty()).map_or_else(|| format!("image_{number}"), str::to_owned);
+        let name =
+            image.name().filter(|name| !name.is_empty()).map_or_else(|| format!("image_{number}"), str::to_owned);
         // No file has this name.
         Some(self.gallery.own(format!("\0{number}"), fetch, &name))
     }

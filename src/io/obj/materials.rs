@@ -231,7 +231,8 @@ impl Read<'_> {
                 current = number.filter(|number| !self.met.contains(number) && begun.insert(*number));
             }
             let Some(number) = current else { continue };
-            let numbers = |count: usize| words.clone().take(count).map(single).filter(|x| x.is_finite()).count() == count;
+            let numbers =
+                |count: usize| words.clone().take(count).map(single).filter(|x| x.is_finite()).count() == count;
             let is_sound = match statement {
                 b"newmtl" => true,
                 b"Kd" => numbers(3),

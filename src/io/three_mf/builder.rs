@@ -9,9 +9,10 @@ use super::super::error::{FileError, FileProblem, Location};
 use super::super::soup::{Expansion, Soup, too_many_vertices};
 use super::super::text::{counted, quoted};
 use super::model::{Object, Placed};
+use super::models::{Inherited, Models};
 use super::roles::{Role, Roles};
 use super::texture::Textures;
-use super::{Inherited, Models};
+
 use crate::mesh::Bounds;
 
 /// Components within components deeper than this are not followed.

@@ -6,7 +6,7 @@ use quick_xml::events::BytesStart;
 
 use super::super::error::FileProblem;
 use super::super::text::quoted;
-use super::model::text;
+use super::xml::text;
 
 /// Name spaces whose elements are read, or change nothing about the shape.
 const READ: [&str; 6] = [

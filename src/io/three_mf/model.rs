@@ -10,8 +10,8 @@ use super::super::colour::Rgba;
 use super::super::error::FileProblem;
 use super::super::text::{Words, integer, number, quoted, single};
 use super::extensions::Extensions;
-use super::package::{Xml, XmlError};
 use super::roles::Role;
+use super::xml::{Xml, XmlError, attribute, text};
 use crate::io::Unit;
 
 /// The number of an image, and places on it.
@@ -164,20 +164,6 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
             _ => {}
         }
     }
-}
-
-/// The raw value of an attribute, by its name without a prefix.
-pub(super) fn attribute<'a>(element: &'a BytesStart<'_>, name: &[u8]) -> Option<Cow<'a, [u8]>> {
-    let mut attributes = element.attributes();
-    // The check for repeated names takes time that grows with the square of their number.
-    let found = attributes.with_checks(false).flatten().find(|a| a.key.local_name().as_ref() == name);
-    found.map(|a| a.value)
-}
-
-/// An attribute's value with its entities replaced, where it has none that are unknown.
-pub(super) fn text(value: &[u8]) -> String {
-    let raw = String::from_utf8_lossy(value);
-    quick_xml::escape::unescape(&raw).map(Cow::into_owned).unwrap_or_else(|_| raw.clone().into_owned())
 }
 
 fn needed<'a>(element: &'a BytesStart<'_>, name: &[u8]) -> Result<Cow<'a, [u8]>, FileProblem> {

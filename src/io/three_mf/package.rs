@@ -1,6 +1,6 @@
 //! The zip package: finding the models in it, and unpacking no more than the file justifies.
 
-use std::io::{self, BufReader, Cursor, Read};
+use std::io::{self, Cursor, Read};
 
 use quick_xml::events::Event;
 use zip::ZipArchive;
@@ -8,7 +8,7 @@ use zip::result::ZipError;
 
 use super::super::error::{FileError, FileProblem, Location};
 use super::super::text::quoted;
-use super::model::{self, Model};
+use super::xml::{Xml, XmlError, attribute, text};
 
 /// Unpacked bytes that any package may have.
 const ALWAYS_ALLOWED: u64 = 64 << 20;
@@ -96,10 +96,6 @@ impl<'a> Package<'a> {
         Ok(bytes)
     }
 
-    pub(super) fn read_model(&mut self, name: &str) -> Result<Model, FileError> {
-        self.read_xml(name, |reader| model::parse(reader, name))
-    }
-
     /// Names of a package start with a slash in references and without in the archive, and do not
     /// differ by case alone.
     fn find(&self, name: &str) -> Option<usize> {
@@ -119,49 +115,15 @@ impl<'a> Package<'a> {
         let limit = self.limit;
         let file = self.archive.by_index(index).map_err(|e| zip_problem(e, name))?;
         let capped = Capped { inner: file, left: &mut self.left };
-        let mut xml = quick_xml::Reader::from_reader(BufReader::new(Box::new(capped) as Box<dyn Read>));
-        xml.config_mut().expand_empty_elements = true;
-        let mut xml = Xml { reader: xml, buffer: Vec::new() };
+        let mut xml = Xml::new(capped);
         parse(&mut xml).map_err(|error| {
-            let byte = xml.reader.buffer_position();
+            let byte = xml.position();
             let problem = match error {
                 XmlError::Problem(problem) => problem,
                 XmlError::Xml(error) => xml_problem(error, limit),
             };
             FileError::at(Location::Part { name: name.to_owned(), byte }, problem)
         })
-    }
-}
-
-/// An XML file being read, event by event.
-pub(super) struct Xml<'a> {
-    reader: quick_xml::Reader<BufReader<Box<dyn Read + 'a>>>,
-    buffer: Vec<u8>,
-}
-
-impl Xml<'_> {
-    /// The next event.
-    pub(super) fn event(&mut self) -> Result<Event<'_>, XmlError> {
-        self.buffer.clear();
-        Ok(self.reader.read_event_into(&mut self.buffer)?)
-    }
-}
-
-/// What goes wrong within an XML file.
-pub(super) enum XmlError {
-    Problem(FileProblem),
-    Xml(quick_xml::Error),
-}
-
-impl From<quick_xml::Error> for XmlError {
-    fn from(error: quick_xml::Error) -> Self {
-        Self::Xml(error)
-    }
-}
-
-impl From<FileProblem> for XmlError {
-    fn from(problem: FileProblem) -> Self {
-        Self::Problem(problem)
     }
 }
 
@@ -206,11 +168,11 @@ fn root_target(xml: &mut Xml<'_>) -> Result<Option<String>, XmlError> {
         match xml.event()? {
             Event::Eof => return Ok(None),
             Event::Start(element) if element.local_name().as_ref() == b"Relationship" => {
-                let kind = model::attribute(&element, b"Type").unwrap_or_default();
+                let kind = attribute(&element, b"Type").unwrap_or_default();
                 if kind.trim_ascii_end().ends_with(b"/3dmodel")
-                    && let Some(target) = model::attribute(&element, b"Target")
+                    && let Some(target) = attribute(&element, b"Target")
                 {
-                    return Ok(Some(model::text(&target)));
+                    return Ok(Some(text(&target)));
                 }
             }
             _ => {}

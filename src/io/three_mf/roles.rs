@@ -8,8 +8,8 @@ use quick_xml::events::{BytesStart, Event};
 
 use super::super::error::FileProblem;
 use super::super::text::{integer, quoted};
-use super::model::{attribute, text};
-use super::package::{Package, Xml, XmlError};
+use super::package::Package;
+use super::xml::{Xml, XmlError, attribute, text};
 
 /// What a piece of an object is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
