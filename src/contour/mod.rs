@@ -18,13 +18,14 @@ mod bodies;
 mod cells;
 mod collapse;
 mod groups;
+mod merging;
 mod place;
 mod signs;
 mod star;
 mod table;
 mod vertices;
 
-pub use collapse::{Collapsed, Merge, collapse_same_voxel};
+pub use collapse::collapse_same_voxel;
 
 use glam::IVec3;
 use rayon::prelude::*;
@@ -89,6 +90,36 @@ pub struct Contour {
     /// Loops that had no triangulation free of folds. Not seen yet; if it is not 0, the mesh may
     /// intersect itself there.
     pub folded_loops: usize,
+}
+
+/// Which voxels' vertices are merged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Merge {
+    /// All, as in the paper.
+    All,
+    /// Those whose source triangles are nearly one plane, so that nothing is lost.
+    Flat {
+        /// How far the merged vertex may lie beside the planes, h.
+        within: f64,
+    },
+}
+
+/// What [`collapse_same_voxel`] made of a contour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Collapsed {
+    /// The coarser contour. The voxel of a vertex stays the one it belongs to.
+    pub contour: Contour,
+    /// The raw vertices that became vertex v: `members[starts[v]..starts[v + 1]]` in `raw`.
+    pub starts: Vec<u32>,
+    /// See `starts`.
+    pub members: Vec<u32>,
+    /// The vertices of the raw contour.
+    pub raw: Vec<ContourVertex>,
+    /// Voxels whose vertices became one.
+    pub merged: usize,
+    /// Voxels whose vertices stayed apart, because merging them would have made the mesh
+    /// non-manifold, turned a triangle over, or made triangles intersect.
+    pub kept_apart: usize,
 }
 
 /// The surface between the voxels of negative `distance` and the others.

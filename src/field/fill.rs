@@ -8,9 +8,8 @@ use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use super::{Ball, Field, Range};
-use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot, brick_of, index_in_brick};
+use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot, brick_of, index_in_brick, voxel_in_brick};
 use crate::progress::{Progress, Stopped};
-use crate::vote::voxel_in_brick;
 
 /// Bricks along a side of the blocks with which the search begins.
 const FIRST: i32 = 8;

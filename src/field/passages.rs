@@ -5,9 +5,8 @@ use rayon::prelude::*;
 
 use super::Field;
 use crate::contour::Edge;
-use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick};
+use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick, voxel_in_brick};
 use crate::progress::{Progress, Stopped};
-use crate::vote::voxel_in_brick;
 
 /// A point whose value is nearer to zero than this, h, is on the level.
 const AT_LEVEL: f64 = 1e-6;

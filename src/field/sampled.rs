@@ -7,10 +7,9 @@ use rayon::prelude::*;
 
 use super::{Ball, Extent, Field, Range, Sample};
 use crate::io::{GridFile, GridValues, SparseValues};
-use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot, brick_of, index_in_brick};
+use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot, brick_of, index_in_brick, voxel_in_brick};
 use crate::mesh::Bounds;
 use crate::progress::{Progress, Stopped};
-use crate::vote::voxel_in_brick;
 
 /// Bricks that a ball may meet, along an axis, for its range to be looked up in each; larger ones are bounded by the steepness.
 const MOST_BRICKS: i32 = 6;

@@ -10,9 +10,6 @@ use crate::mesh::least_squares::least_squares;
 /// Planes that turn by less (cosine, 3°) are no crease.
 pub(super) const FLAT: f64 = 0.9986;
 
-/// Planes that turn by less (cosine, 20°) belong to one smooth piece.
-pub(super) const SMOOTH: f64 = 0.94;
-
 /// How far a point may lie beyond the ends of its facets, h, and still count as being on the source.
 const BEYOND: f64 = 0.05;
 

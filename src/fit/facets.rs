@@ -3,13 +3,15 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::crease::SMOOTH;
 use crate::mesh::around::Around;
 use crate::mesh::edges::Edges;
 use crate::mesh::{Plane, TriMesh};
 
 /// No facet.
 const NONE: u32 = u32::MAX;
+
+/// Planes that turn by less (cosine, 20°) belong to one smooth piece.
+pub(super) const SMOOTH: f64 = 0.94;
 
 /// Most facets that a walk crosses.
 const LONGEST_WALK: usize = 24;

@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::crease::{Crease, FLAT, Place, SMOOTH, crease};
+use super::crease::{Crease, FLAT, Place, crease};
 use super::cut::{Spared, edges_of, inset};
-use super::facets::Facets;
+use super::facets::{Facets, SMOOTH};
 use super::snap::snap;
 use super::surface::{NOT_KEPT, Surface, rounded};
 use super::{FitOptions, FitReport};

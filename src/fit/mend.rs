@@ -7,9 +7,9 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::crease::{Place, SMOOTH, nearest};
+use super::crease::{Place, nearest};
 use super::cut::Cut;
-use super::facets::{Facets, Sides};
+use super::facets::{Facets, SMOOTH, Sides};
 use super::surface::{agreement, faces_out, rounded, shape};
 use crate::mesh::HalfEdges;
 

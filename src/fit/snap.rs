@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::crease::{Crease, Place, SMOOTH, crease, nearest};
-use super::facets::{Facets, Sides};
+use super::crease::{Crease, Place, crease, nearest};
+use super::facets::{Facets, SMOOTH, Sides};
 use super::surface::{Surface, faces_out, rounded, shape};
 use crate::mesh::around::Around;
 

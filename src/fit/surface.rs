@@ -3,8 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::crease::{Place, SMOOTH};
-use super::facets::{Facets, Side, Sides};
+use super::crease::Place;
+use super::facets::{Facets, SMOOTH, Side, Sides};
 use crate::mesh::TriMesh;
 
 /// A triangle whose centre lies this part of its height beyond the source is not on it.

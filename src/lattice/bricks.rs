@@ -44,6 +44,12 @@ pub fn index_in_brick(voxel: IVec3) -> usize {
     ((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6) as usize
 }
 
+/// The voxel with index `n` of a brick, seen from the brick's first voxel: the inverse of [`index_in_brick`].
+#[inline]
+pub fn voxel_in_brick(n: usize) -> IVec3 {
+    IVec3::new((n & 7) as i32, (n >> 3 & 7) as i32, (n >> 6) as i32)
+}
+
 /// The order of active bricks.
 #[inline]
 fn order(brick: &IVec3) -> (i32, i32, i32) {

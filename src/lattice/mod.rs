@@ -4,7 +4,7 @@ mod bricks;
 mod directions;
 mod sizing;
 
-pub use bricks::{BRICK, BRICK_VOXELS, Bricks, Grid, Slot, brick_of, index_in_brick};
+pub use bricks::{BRICK, BRICK_VOXELS, Bricks, Grid, Slot, brick_of, index_in_brick, voxel_in_brick};
 pub use directions::{DIRECTIONS, Direction};
 
 use glam::{DVec3, IVec3};

@@ -7,11 +7,10 @@ use super::offset::MARGIN;
 use super::remains::Search;
 use super::{Balls, Body, MorphologyError, Offset, Region};
 use crate::contour::{ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
-use crate::lattice::{BRICK, Grid, Lattice};
+use crate::lattice::{BRICK, Grid, Lattice, voxel_in_brick};
 use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
-use crate::vote::voxel_in_brick;
 
 /// What a closing may fill, h, and be left out: the first step's surface is a mesh, and where it is round, its chords
 /// bring the second step off by h² / 8 r, 0.06 h at r = 2 h.

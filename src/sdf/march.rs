@@ -7,9 +7,8 @@ use std::sync::Arc;
 use glam::IVec3;
 
 use super::smooth::FAR;
-use crate::lattice::{BRICK, Bricks, Grid, Lattice, Slot, brick_of, index_in_brick};
+use crate::lattice::{BRICK, Bricks, Grid, Lattice, Slot, brick_of, index_in_brick, voxel_in_brick};
 use crate::progress::{Progress, Stopped};
-use crate::vote::voxel_in_brick;
 
 /// A voxel on the front; the heap gives the nearest first, ties in lattice order.
 #[derive(PartialEq)]

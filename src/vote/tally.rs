@@ -3,7 +3,7 @@
 use glam::IVec3;
 
 use super::{VoteRule, Winding};
-use crate::lattice::{BRICK, BRICK_VOXELS, Direction, index_in_brick};
+use crate::lattice::{BRICK, BRICK_VOXELS, Direction, index_in_brick, voxel_in_brick};
 use crate::ldi::{Expression, Hit, Operands, Spans};
 use crate::progress::Stopped;
 
@@ -156,12 +156,6 @@ impl Jury<'_> {
         let inside: Vec<bool> = counters.iter().map(|&c| c >= 1).collect();
         self.expression.evaluate(&inside)
     }
-}
-
-/// Lattice offset of voxel number `n` of a brick.
-#[inline]
-pub fn voxel_in_brick(n: usize) -> IVec3 {
-    IVec3::new((n & 7) as i32, (n >> 3 & 7) as i32, (n >> 6) as i32)
 }
 
 /// Fills the masks of the rays of one direction that meet the brick at `base`.

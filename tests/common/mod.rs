@@ -137,8 +137,7 @@ pub mod stages {
 /// Distances over lattices.
 pub mod fields {
     use glam::IVec3;
-    use meshwright::lattice::Grid;
-    use meshwright::vote::voxel_in_brick;
+    use meshwright::lattice::{Grid, voxel_in_brick};
 
     fn voxel(brick: IVec3, n: usize) -> IVec3 {
         brick * 8 + voxel_in_brick(n)

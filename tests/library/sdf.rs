@@ -5,12 +5,12 @@ use std::sync::atomic::AtomicBool;
 
 use crate::common::{shapes, stages};
 use glam::{DVec3, IVec3};
-use meshwright::lattice::{BRICK, Grid, Lattice};
+use meshwright::lattice::{BRICK, Grid, Lattice, voxel_in_brick};
 use meshwright::ldi::Spans;
 use meshwright::mesh::{Plane, TriMesh};
 use meshwright::progress::Progress;
 use meshwright::sdf::{RobustOptions, Trust, correct, estimate, march, robust, smooth};
-use meshwright::vote::{VoteRule, Votes, vote_near_surface, voxel_in_brick};
+use meshwright::vote::{VoteRule, Votes, vote_near_surface};
 
 fn field(spans: &[Spans], planes: &[Plane], votes: &Grid<Votes>, options: &RobustOptions) -> Grid<f32> {
     robust(spans, planes, votes, options, &Progress::none()).expect("not stopped")

@@ -4,12 +4,11 @@ use glam::IVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick};
+use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick, voxel_in_brick};
 use crate::mesh::edges::Union;
 use crate::morphology::closed::{own_distance, unchanged};
 use crate::morphology::{Balls, Body, MorphologyError, around};
 use crate::progress::Progress;
-use crate::vote::voxel_in_brick;
 
 /// The number of no voxel.
 const NONE: u32 = u32::MAX;

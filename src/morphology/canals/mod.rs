@@ -8,12 +8,12 @@ mod fill;
 mod passage;
 mod topology;
 
-use glam::{DVec3, IVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::closed::{BESIDE, samples};
-use super::{Balls, Body, Centres, MorphologyError, corners};
+use super::{Balls, Body, Centres, MorphologyError, Region};
 use crate::lattice::{Grid, Lattice};
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::Progress;
@@ -95,25 +95,6 @@ impl Canals {
             *numbers.select_nth_unstable(middle).1
         };
         (0..solid.triangles.len()).into_par_iter().map(over).collect()
-    }
-}
-
-/// Voxels of some canals.
-pub struct Region<'a> {
-    of: &'a Grid<u32>,
-    chosen: Vec<bool>,
-}
-
-impl Region<'_> {
-    /// Whether `voxel` is one of them.
-    pub fn holds(&self, voxel: IVec3) -> bool {
-        self.chosen[self.of.get(voxel) as usize]
-    }
-
-    /// Whether one of the voxels around `p` (lattice coordinates) is one of them.
-    pub(super) fn is_beside(&self, p: DVec3) -> bool {
-        let low = p.floor().as_ivec3();
-        corners().any(|corner| self.holds(low + corner))
     }
 }
 

@@ -1,9 +1,8 @@
 //! Closed meshes that are hard in one way or another, and distances by looking at all triangles.
 
 use glam::{DQuat, DVec3};
-use meshwright::lattice::Lattice;
+use meshwright::lattice::{Lattice, voxel_in_brick};
 use meshwright::mesh::TriMesh;
-use meshwright::vote::voxel_in_brick;
 
 use crate::common::shapes::{cuboid, torus};
 
