@@ -101,7 +101,7 @@ impl Model {
         let jury = Jury { spans: &spans, operands: &self.operands, expression: &expression, rule, winding: &winding };
         let votes = vote_near_surface(&jury, &Progress::none()).expect("nobody stops it");
         let planes: Vec<Plane> = (0..self.mesh.triangles.len()).map(|t| Plane::through(self.mesh.corners(t))).collect();
-        robust(&spans, &planes, &votes, options, &Progress::none()).expect("nobody stops it")
+        robust(&spans, &planes, (&votes, &self.lattice), options, &Progress::none()).expect("nobody stops it").grid
     }
 
     fn table_2(&self, name: &str, field: &str, options: &RobustOptions) {

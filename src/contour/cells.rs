@@ -7,7 +7,7 @@ use robust::{Coord, orient2d};
 use super::signs::{Brick, Crossed, Signs, Tile};
 use super::table::{LOOPS, Loop, MOST_VERTICES, edge_ends};
 use super::vertices::{TASK, Vertices, bits, locate, value};
-use crate::lattice::Grid;
+use crate::lattice::{Grid, trilinear};
 use crate::mesh::triangles_intersect;
 use crate::progress::{Progress, Stopped};
 
@@ -153,12 +153,6 @@ impl Tables<'_> {
             value(self.signs, self.distance, tile, index)
         })
     }
-}
-
-fn trilinear(corners: &[f64; 8], p: DVec3) -> f64 {
-    let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
-    let along_x: [f64; 4] = std::array::from_fn(|k| mix(corners[2 * k], corners[2 * k + 1], p.x));
-    mix(mix(along_x[0], along_x[1], p.y), mix(along_x[2], along_x[3], p.y), p.z)
 }
 
 /// How many pairs of triangles meet where they should not, with the triangles of the cell's other

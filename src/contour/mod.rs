@@ -12,7 +12,7 @@
 //! lattice stays a lattice of boxes, as long as `h` is some ulp (of `f32`, at the largest
 //! coordinate) wide.
 //!
-//! A distance of exactly 0 counts as outside, and so does every voxel beyond [`Lattice::dims`].
+//! A distance of exactly 0 counts as outside, and so does every voxel beyond [`Lattice::dims`](crate::lattice::Lattice::dims).
 
 mod bodies;
 mod cells;
@@ -30,7 +30,7 @@ pub use collapse::collapse_same_voxel;
 use glam::IVec3;
 use rayon::prelude::*;
 
-use crate::lattice::{Grid, Lattice};
+use crate::lattice::DistanceField;
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
 
@@ -124,19 +124,19 @@ pub struct Collapsed {
 
 /// The surface between the voxels of negative `distance` and the others.
 ///
-/// `distance` is in h; its signs decide and its values choose the triangulations. `crossing` gives
+/// The signs of `distance` decide, and its values choose the triangulations. `crossing` gives
 /// the exact place of the surface on a lattice edge whose ends differ; where it gives none, the
 /// place is interpolated from the distances. Wherever two neighbouring voxels differ in sign, both
 /// must lie in active bricks or one of them beyond the lattice and the other in an active brick.
 ///
 /// The order of vertices and triangles is that of bricks, voxels and axes. Bærentzen §5.
 pub fn contour(
-    lattice: &Lattice,
-    distance: &Grid<f32>,
+    distance: &DistanceField,
     crossing: &(impl Fn(Edge) -> Option<Crossing> + Sync),
     options: &ContourOptions,
     progress: &Progress,
 ) -> Result<Contour, Stopped> {
+    let DistanceField { lattice, grid: distance, .. } = distance;
     let signs = signs::Signs::new(lattice, distance);
     let crossed: Vec<signs::Crossed> = signs.bricks.par_iter().map(|b| signs::Crossed::new(&signs, b)).collect();
     let first: Vec<u32> = crossed

@@ -56,16 +56,13 @@ pub fn level(
     progress: &Progress,
 ) -> Result<Level, LevelError> {
     let options = FillOptions { band: Some(BAND * lattice.h), max_memory };
-    let mut grid = fill(field, lattice, &options, progress)?;
-    let cut_off = touches_border(&grid, lattice.dims);
-    // The contour takes distances in h.
-    grid.values.par_iter_mut().flatten().for_each(|value| *value /= lattice.h as f32);
-    (grid.inside, grid.outside) = (grid.inside / lattice.h as f32, grid.outside / lattice.h as f32);
-    let passages = Passages::of(field, &grid, lattice, progress)?;
+    let values = fill(field, lattice, &options, progress)?.into_voxels();
+    let cut_off = touches_border(&values);
+    let passages = Passages::of(field, &values, progress)?;
     progress.share(0.8);
     let crossing = |edge: Edge| Some(Crossing { t: passages.at(edge)?, triangle: NO_TRIANGLE });
-    let mut contour = contour(lattice, &grid, &crossing, &ContourOptions::default(), progress)?;
-    drop(grid);
+    let mut contour = contour(&values, &crossing, &ContourOptions::default(), progress)?;
+    drop(values);
     progress.share(0.9);
     let positions = &contour.mesh.positions;
     let planes: Vec<Plane> = positions.par_chunks(PACKET).flat_map_iter(|points| tangents(field, points)).collect();

@@ -48,7 +48,7 @@ pub use mesh::MeshField;
 pub use placed::{Placement, placed};
 pub use points::{PointField, scattered};
 pub use range::{Ball, Extent, Range};
-pub use sampled::{Sampled, blur_band, blurred, dense};
+pub use sampled::{Sampled, blur_band, blurred};
 pub use solids::{Body, Solid};
 
 /// A field that others can be made of.

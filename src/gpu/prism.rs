@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::run::{Run, Source};
 use super::{Device, GpuError, GpuReport, shaders};
-use crate::lattice::{BRICK, Grid, Lattice};
+use crate::lattice::{BRICK, DistanceField, Lattice};
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
 use crate::sdf::exact::{ExactOptions, Slab, Slabs};
@@ -29,7 +29,7 @@ pub fn prism(
     options: &ExactOptions,
     timings: bool,
     progress: &Progress,
-) -> Result<(Grid<f32>, GpuReport), GpuError> {
+) -> Result<(DistanceField, GpuReport), GpuError> {
     let mut slabs = Slabs::new(mesh, lattice, options)?;
     let (band, end) = (slabs.band(), slabs.end());
     let size = [end.x as u32, end.y as u32];

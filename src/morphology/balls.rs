@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::offset::MARGIN;
 use super::{Body, MorphologyError, Remain, around};
-use crate::lattice::{BRICK_VOXELS, Grid, Lattice, Slot};
+use crate::lattice::{BRICK_VOXELS, DistanceField, Slot};
 use crate::mesh::edges::Union;
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::Progress;
@@ -106,21 +106,16 @@ impl<'a> Balls<'a> {
         self.centres.passage(ends, values, self.radius.abs())
     }
 
-    /// That distance, h, at the voxels of `own`, the distance to the solid itself: at centres it is that one, and
+    /// That distance at the voxels of `own`, the distance to the solid itself; both count in voxels. At centres it is that one, and
     /// nowhere is more than it outside of a closing, or less inside of an opening.
-    pub(super) fn field(
-        &self,
-        own: &Grid<f32>,
-        lattice: &Lattice,
-        progress: &Progress,
-    ) -> Result<Grid<f32>, MorphologyError> {
-        let reach = self.radius.abs() / lattice.h;
+    pub(super) fn field(&self, own: &DistanceField, progress: &Progress) -> Result<DistanceField, MorphologyError> {
+        let reach = self.radius.abs() / own.lattice.h;
         let options = ExactOptions { band: Band::Within(reach + MARGIN), max_memory: None };
-        let far = exact(self.centres.mesh, lattice, Sign::Pseudonormal, &options, progress)?;
+        let far = exact(self.centres.mesh, &own.lattice, Sign::Pseudonormal, &options, progress)?.grid;
         let (reach, side) = (reach as f32, self.radius.signum() as f32);
         let outside = [far.outside.abs(); BRICK_VOXELS];
         let mut field = own.clone();
-        field.values.par_iter_mut().zip(own.bricks.active()).for_each(|(values, &brick)| {
+        field.grid.values.par_iter_mut().zip(own.grid.bricks.active()).for_each(|(values, &brick)| {
             let far = match far.bricks.slot(brick) {
                 Slot::Active(n) => &far.values[n as usize],
                 Slot::Inside | Slot::Outside => &outside,

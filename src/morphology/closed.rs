@@ -7,7 +7,7 @@ use super::offset::MARGIN;
 use super::remains::Search;
 use super::{Balls, Body, MorphologyError, Offset, Region};
 use crate::contour::{ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
-use crate::lattice::{BRICK, Grid, Lattice, voxel_in_brick};
+use crate::lattice::{BRICK, DistanceField, Grid, Lattice, voxel_in_brick};
 use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
@@ -52,10 +52,10 @@ pub fn closed(
 ) -> Result<Closed, MorphologyError> {
     let h = lattice.h;
     let own = own_distance(original, balls.radius, lattice, progress)?;
-    let mut field = balls.field(&own, lattice, progress)?;
+    let mut field = balls.field(&own, progress)?;
     let within = (unchanged(balls.radius, h) / h) as f32;
     let holds = |voxel: IVec3| region.is_none_or(|region| region.holds(voxel));
-    let changed = restore(&mut field, &own, within, &holds);
+    let changed = restore(&mut field.grid, &own.grid, within, &holds);
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
     let crossing = |edge: Edge| {
         let voxels = [edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]];
@@ -63,13 +63,13 @@ pub fn closed(
         let at = |t: f64| ends[0].lerp(ends[1], t);
         let free = voxels.into_iter().any(holds);
         let stays = |t: &f64| !free || balls.at(at(*t), h).0.abs() < unchanged(balls.radius, h);
-        let before = voxels.map(|voxel| f64::from(own.get(voxel)) * h);
+        let before = voxels.map(|voxel| own.length(own.grid.get(voxel)));
         match original.passage(ends, before, 0.0).filter(stays) {
             Some(t) => Some(Crossing { t, triangle: original.distance().at(at(t))?.triangle }),
             None => Some(Crossing { t: balls.passage(ends)?, triangle: NO_TRIANGLE }),
         }
     };
-    let mut contour = contour(lattice, &field, &crossing, &ContourOptions::default(), progress)?;
+    let mut contour = contour(&field, &crossing, &ContourOptions::default(), progress)?;
     let made: Vec<usize> =
         (0..contour.vertices.len()).filter(|&v| contour.vertices[v].triangle == NO_TRIANGLE).collect();
     let planes: Vec<Plane> = made.par_iter().map(|&v| balls.tangent(contour.mesh.positions[v], h)).collect();
@@ -77,7 +77,7 @@ pub fn closed(
     for (&v, n) in made.iter().zip(original.mesh.triangles.len() as u32..) {
         contour.vertices[v].triangle = n;
     }
-    let search = Search { body: original, level: 0.0, side: -balls.radius.signum(), lattice, field: &own };
+    let search = Search { body: original, level: 0.0, side: -balls.radius.signum(), lattice, field: &own.grid };
     let mut remains = search.remains(progress)?;
     remains.retain(|remain| balls.at(remain.point, h).0.abs() < unchanged(balls.radius, h));
     Ok(Closed { offset: Offset { contour, planes, remains }, changed })
@@ -91,13 +91,13 @@ pub struct Closed {
     pub changed: bool,
 }
 
-/// The distance to the solid, h, as far as balls around it reach.
+/// The distance to the solid, counted in voxels, as far as balls around it reach.
 pub(super) fn own_distance(
     original: &Body<'_>,
     radius: f64,
     lattice: &Lattice,
     progress: &Progress,
-) -> Result<Grid<f32>, MorphologyError> {
+) -> Result<DistanceField, MorphologyError> {
     let band = Band::Within(radius.abs() / lattice.h + MARGIN);
     Ok(exact(original.mesh, lattice, Sign::Pseudonormal, &ExactOptions { band, max_memory: None }, progress)?)
 }

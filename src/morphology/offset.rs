@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::remains::{Remain, Search};
 use super::{Body, MorphologyError};
 use crate::contour::{Contour, ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
-use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice};
+use crate::lattice::{BRICK, Bricks, DistanceField, Lattice, voxel_in_brick};
 use crate::mesh::Plane;
 use crate::progress::Progress;
 use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
@@ -40,16 +40,16 @@ pub fn offset(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progres
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
     let crossing = |edge: Edge| {
         let (from, to) = (model(edge.voxel), model(edge.voxel + IVec3::AXES[edge.axis as usize]));
-        let value = |voxel: IVec3| f64::from(field.get(voxel)) * lattice.h + level;
+        let value = |voxel: IVec3| field.length(field.grid.get(voxel)) + level;
         let values = [value(edge.voxel), value(edge.voxel + IVec3::AXES[edge.axis as usize])];
         let t = body.passage([from, to], values, level)?;
         Some(Crossing { t, triangle: NO_TRIANGLE })
     };
-    let mut contour = contour(lattice, &field, &crossing, &ContourOptions::default(), progress)?;
+    let mut contour = contour(&field, &crossing, &ContourOptions::default(), progress)?;
     let planes: Vec<Plane> = contour.mesh.positions.par_iter().map(|&p| tangent(body, level, p, lattice.h)).collect();
     progress.check()?;
     contour.vertices.iter_mut().zip(0..).for_each(|(vertex, n)| vertex.triangle = n);
-    let remains = Search { body, level, side: level.signum(), lattice, field: &field }.remains(progress)?;
+    let remains = Search { body, level, side: level.signum(), lattice, field: &field.grid }.remains(progress)?;
     Ok(Offset { contour, planes, remains })
 }
 
@@ -59,12 +59,18 @@ pub(super) fn tangent(body: &Body<'_>, level: f64, p: DVec3, h: f64) -> Plane {
     Plane { normal, offset: normal.dot(p) - (value - level) }
 }
 
-/// The distance less the level, in h, over the lattice.
-fn field(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) -> Result<Grid<f32>, MorphologyError> {
+/// The distance less the level over the lattice, counted in voxels.
+fn field(
+    body: &Body<'_>,
+    level: f64,
+    lattice: &Lattice,
+    progress: &Progress,
+) -> Result<DistanceField, MorphologyError> {
     let level_h = level / lattice.h;
     let reach = level_h.abs() * body.mitre.unwrap_or(1.0);
     let options = ExactOptions { band: Band::Within(reach + MARGIN), max_memory: None };
-    let mut grid = exact(body.mesh, lattice, Sign::Pseudonormal, &options, progress)?;
+    let mut field = exact(body.mesh, lattice, Sign::Pseudonormal, &options, progress)?;
+    let grid = &mut field.grid;
     if body.sheet {
         grid.values.par_iter_mut().flatten().for_each(|value| *value = value.abs());
         grid.bricks = Arc::new(Bricks::new(grid.bricks.active().iter().copied()));
@@ -73,22 +79,14 @@ fn field(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) ->
     if body.mitre.is_some() {
         let undecided = |d: f64| d * level > 0.0 && d.abs() >= level_h.abs() && d.abs() <= reach + 1.0;
         grid.values.par_iter_mut().zip(bricks.active()).for_each(|(values, &brick)| {
-            for (n, value) in
-                (0i32..).zip(values.iter_mut()).take(BRICK_VOXELS).filter(|(_, v)| undecided(f64::from(**v)))
-            {
-                let voxel = BRICK * brick + IVec3::new(n & 7, n >> 3 & 7, n >> 6);
+            for (n, value) in values.iter_mut().enumerate().filter(|(_, value)| undecided(f64::from(**value))) {
+                let voxel = BRICK * brick + voxel_in_brick(n);
                 *value = (body.at(lattice.to_model(voxel.as_dvec3()), f64::from(value.abs()) * lattice.h * LIKELY).0
                     / lattice.h) as f32;
             }
         });
         progress.check()?;
     }
-    shift(&mut grid, -level_h as f32);
-    Ok(grid)
-}
-
-/// Adds `by` to all values, so that another level of the field is where it is zero.
-pub(super) fn shift(grid: &mut Grid<f32>, by: f32) {
-    grid.values.par_iter_mut().flatten().for_each(|value| *value += by);
-    (grid.inside, grid.outside) = (grid.inside + by, grid.outside + by);
+    field.shift(-level_h as f32);
+    Ok(field)
 }

@@ -9,7 +9,7 @@ use super::frame::Frame;
 use super::plan::{BASE_BYTES, Input};
 use super::{Backend, BackendReport, Error, StageTime, VoxelSize, prepare, solid, stages};
 use crate::digits;
-use crate::lattice::{BRICK, Grid, Lattice, Slot};
+use crate::lattice::{BRICK, DistanceField, Lattice, Slot};
 use crate::ldi::{Expression, MAX_VOXELS, Spans, ldis, spans};
 use crate::mesh::TriMesh;
 use crate::orient::{OrientMode, OrientReport};
@@ -94,10 +94,8 @@ impl DistanceOptions {
 /// A field and how it came about.
 #[derive(Debug, Clone)]
 pub struct DistanceOutcome {
-    /// Signed distance in h, negative inside.
-    pub field: Grid<f32>,
-    /// The lattice, which reaches as far around the mesh as the band.
-    pub lattice: Lattice,
+    /// The signed distance, on a lattice that reaches as far around the mesh as the band.
+    pub field: DistanceField,
     /// What was found and done.
     pub report: DistanceReport,
 }
@@ -185,7 +183,8 @@ pub fn distance(input: &TriMesh, options: &DistanceOptions, progress: &Progress)
         _ => run.of_soup(input, &mut stages, &mut report)?,
     };
     report.stages = stages.finish();
-    let mut outcome = DistanceOutcome { field, lattice: frame.global_lattice(lattice), report };
+    let field = DistanceField { lattice: frame.global_lattice(lattice), ..field };
+    let mut outcome = DistanceOutcome { field, report };
     outcome.report.vote.iter_mut().for_each(|vote| frame.votes(vote));
     outcome.describe(band);
     Ok(outcome)
@@ -275,17 +274,17 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<Grid<f32>, Error> {
+    fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<DistanceField, Error> {
         let options = ExactOptions { band: self.band, max_memory: None };
         exact::exact(mesh, &self.lattice, sign, &options, self.progress).map_err(refusal)
     }
 
-    fn characteristics(&self, mesh: &TriMesh) -> Result<Grid<f32>, Error> {
+    fn characteristics(&self, mesh: &TriMesh) -> Result<DistanceField, Error> {
         let options = ExactOptions { band: self.band, max_memory: None };
         characteristics::characteristics(mesh, &self.lattice, &options, self.progress).map_err(refusal)
     }
 
-    fn prism(&self, mesh: &TriMesh) -> Result<(Grid<f32>, BackendReport), Error> {
+    fn prism(&self, mesh: &TriMesh) -> Result<(DistanceField, BackendReport), Error> {
         let options = ExactOptions { band: self.band, max_memory: None };
         let made = backend::prism(mesh, &self.lattice, &options, self.options.backend, self.progress);
         made.map_err(|error| match error {
@@ -300,7 +299,7 @@ impl Run<'_> {
         input: &TriMesh,
         stages: &mut stages::Stages<'_>,
         report: &mut DistanceReport,
-    ) -> Result<Grid<f32>, Error> {
+    ) -> Result<DistanceField, Error> {
         let (progress, orient, lattice) = (self.progress, self.options.orient, &self.lattice);
         stages.begin("orient")?;
         let mut soup = prepare::prepare(std::slice::from_ref(input), orient, progress)?;
@@ -341,7 +340,8 @@ impl Run<'_> {
                 self.exact(&soup.mesh, Sign::Votes(&votes))
             }
             DistanceMethod::Robust => {
-                let near = sdf::robust(&spans, &soup.planes(lattice), &votes, &RobustOptions::default(), progress)?;
+                let near =
+                    sdf::robust(&spans, &soup.planes(lattice), (&votes, lattice), &RobustOptions::default(), progress)?;
                 drop(spans);
                 Ok(self.march(&near)?)
             }
@@ -349,17 +349,17 @@ impl Run<'_> {
     }
 
     /// Extends the robust field to the band, or to the whole lattice.
-    fn march(&self, near: &Grid<f32>) -> Result<Grid<f32>, Stopped> {
+    fn march(&self, near: &DistanceField) -> Result<DistanceField, Stopped> {
         let reach = match self.band {
             Band::Within(h) => h as f32,
             Band::Full => self.lattice.dims.as_vec3().length() + BRICK as f32,
         };
-        let mut field = sdf::march(near, &self.lattice, reach, self.progress)?;
+        let mut field = sdf::march(near, reach, self.progress)?;
         if let Band::Within(h) = self.band {
             // Marching goes a little beyond narrow bands.
             let band = h as f32;
-            field.values.par_iter_mut().flatten().for_each(|value| *value = value.clamp(-band, band));
-            (field.inside, field.outside) = (-band, band);
+            field.grid.values.par_iter_mut().flatten().for_each(|value| *value = value.clamp(-band, band));
+            (field.grid.inside, field.grid.outside) = (-band, band);
         }
         Ok(field)
     }
@@ -368,39 +368,40 @@ impl Run<'_> {
 impl DistanceOutcome {
     /// Appends the values of plane `z` of the lattice, model units, x fastest, then y.
     pub fn plane(&self, z: usize, values: &mut Vec<f32>) {
-        let [width, height] = [self.lattice.dims.x as usize, self.lattice.dims.y as usize];
+        let grid = &self.field.grid;
+        let [width, height] = [self.field.lattice.dims.x as usize, self.field.lattice.dims.y as usize];
         let start = values.len();
         values.resize(start + width * height, 0.0);
-        let (z, layer, h) = (z as i32 / BRICK, z % BRICK as usize, self.lattice.h);
-        let scaled = |value: f32| (f64::from(value) * h) as f32;
+        let (z, layer) = (z as i32 / BRICK, z % BRICK as usize);
+        let scaled = |value: f32| self.field.length(value) as f32;
         for (y, rows) in values[start..].chunks_mut(8 * width).enumerate() {
             for x in 0..width.div_ceil(8) {
-                let slot = self.field.bricks.slot(IVec3::new(x as i32, y as i32, z));
+                let slot = grid.bricks.slot(IVec3::new(x as i32, y as i32, z));
                 for (row, values) in rows.chunks_mut(width).enumerate() {
                     let values = &mut values[8 * x..width.min(8 * x + 8)];
                     match slot {
                         Slot::Active(n) => {
-                            let brick = &self.field.values[n as usize][64 * layer + 8 * row..];
+                            let brick = &grid.values[n as usize][64 * layer + 8 * row..];
                             values.iter_mut().zip(brick).for_each(|(value, &from)| *value = scaled(from));
                         }
-                        Slot::Inside => values.fill(scaled(self.field.inside)),
-                        Slot::Outside => values.fill(scaled(self.field.outside)),
+                        Slot::Inside => values.fill(scaled(grid.inside)),
+                        Slot::Outside => values.fill(scaled(grid.outside)),
                     }
                 }
             }
         }
     }
 
-    /// A field in h over `lattice`, with its report filled in.
-    pub(super) fn described(field: Grid<f32>, lattice: Lattice, band: Band, report: DistanceReport) -> Self {
-        let mut outcome = Self { field, lattice, report };
+    /// A field with its report filled in.
+    pub(super) fn described(field: DistanceField, band: Band, report: DistanceReport) -> Self {
+        let mut outcome = Self { field, report };
         outcome.describe(band);
         outcome
     }
 
     /// Fills in what the report says of the field.
     fn describe(&mut self, band: Band) {
-        let planes = (0..self.lattice.dims.z as usize).into_par_iter();
+        let planes = (0..self.field.lattice.dims.z as usize).into_par_iter();
         let of_plane = |z| {
             let mut values = Vec::new();
             self.plane(z, &mut values);
@@ -410,12 +411,12 @@ impl DistanceOutcome {
                 .fold(start, |(inside, [low, high]), &v| (inside + usize::from(v < 0.0), [low.min(v), high.max(v)]))
         };
         let parts: Vec<(usize, [f32; 2])> = planes.map(of_plane).collect();
-        let report = &mut self.report;
-        report.origin = self.lattice.origin.to_array();
-        report.voxel = self.lattice.h;
-        report.dims = self.lattice.dims.to_array();
-        report.band = if let Band::Within(h) = band { Some(h * self.lattice.h) } else { None };
-        report.stored = self.field.values.len() * crate::lattice::BRICK_VOXELS;
+        let (report, lattice) = (&mut self.report, &self.field.lattice);
+        report.origin = lattice.origin.to_array();
+        report.voxel = lattice.h;
+        report.dims = lattice.dims.to_array();
+        report.band = if let Band::Within(h) = band { Some(h * lattice.h) } else { None };
+        report.stored = self.field.grid.values.len() * crate::lattice::BRICK_VOXELS;
         report.inside = parts.iter().map(|part| part.0).sum();
         let range = parts.iter().map(|part| part.1);
         report.range = range.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], [low, high]| [a.min(low), b.max(high)]);

@@ -100,11 +100,11 @@ impl Job<'_> {
         let votes = vote_near_surface(&jury, progress)?;
         stages.begin("sdf")?;
         let planes = soup.planes(&lattice);
-        let distance = sdf::robust(&spans, &planes, &votes, &options.robust, progress)?;
+        let distance = sdf::robust(&spans, &planes, (&votes, &lattice), &options.robust, progress)?;
         stages.begin("contour")?;
         let lid = |inside, outside| refine::lid(&winding, expression, inside, outside);
         let crossing = solid::crossings(&spans, &distance, lid);
-        let mut raw = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;
+        let mut raw = contour(&distance, &crossing, &ContourOptions::default(), progress)?;
         if raw.mesh.triangles.is_empty() {
             return Err(Error::NothingEnclosed {
                 reason: solid::why_nothing(&spans, [h, prepare::finest(&bounds)], hits, soup.operands.count()),

@@ -7,7 +7,7 @@ use super::{Error, LdiReport, Report, ThinRegion, ThinReport};
 use crate::contour::{Crossing, Edge, NO_TRIANGLE};
 use crate::digits;
 use crate::fit::{NOT_KEPT, Surface};
-use crate::lattice::{Grid, Lattice};
+use crate::lattice::{DistanceField, Grid, Lattice};
 use crate::ldi::{Layers, Lengths, Spans, THIN, ThinPlace, edge_crossing, lengths, thin_places};
 use crate::mesh::Plane;
 use crate::vote::{Lid, Votes, doubts};
@@ -31,11 +31,11 @@ pub(super) fn count(layers: &[Layers]) -> Count {
 /// The crossings of lattice edges for the contour: with the surface, or with a lid over a hole.
 pub(super) fn crossings<'a>(
     spans: &'a [Spans],
-    distance: &'a Grid<f32>,
+    distance: &'a DistanceField,
     lid: impl Fn(IVec3, IVec3) -> Option<Lid> + Sync + 'a,
 ) -> impl Fn(Edge) -> Option<Crossing> + Sync + 'a {
     move |edge| {
-        let lower_inside = distance.get(edge.voxel) < 0.0;
+        let lower_inside = distance.grid.get(edge.voxel) < 0.0;
         if let Some((t, hit)) = edge_crossing(spans, edge.voxel, edge.axis as usize, lower_inside) {
             return Some(Crossing { t, triangle: hit.triangle() });
         }

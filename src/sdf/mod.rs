@@ -20,23 +20,24 @@ pub use levels::{Levels, LevelsError, levels_memory};
 pub use march::march;
 pub use smooth::{FAR, smooth};
 
-use crate::lattice::Grid;
+use crate::lattice::{DistanceField, Grid, Lattice};
 use crate::ldi::Spans;
 use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
 use crate::vote::Votes;
 
-/// The robust field in the active bricks of `votes`: right near the surface, ±√3 elsewhere.
+/// The robust field in the active bricks of `votes`, counted in voxels of `lattice`: right near the surface, ±√3 elsewhere.
 /// `planes` are those of the soup's triangles, in lattice coordinates.
 pub fn robust(
     spans: &[Spans],
     planes: &[Plane],
-    votes: &Grid<Votes>,
+    (votes, lattice): (&Grid<Votes>, &Lattice),
     options: &RobustOptions,
     progress: &Progress,
-) -> Result<Grid<f32>, Stopped> {
+) -> Result<DistanceField, Stopped> {
     let estimates = estimate(spans, planes, &votes.bricks, progress)?;
-    correct(smooth(votes, &estimates, options, progress)?, &estimates, options, progress)
+    let grid = correct(smooth(votes, &estimates, options, progress)?, &estimates, options, progress)?;
+    Ok(DistanceField::in_voxels(*lattice, grid))
 }
 
 /// Which voxels keep the side of their vote while the field is smoothed.

@@ -84,12 +84,12 @@ fn a_ball_with_an_inactive_core_has_the_volume_of_a_ball() {
     let (centre, radius) = (DVec3::new(31.3, 30.8, 31.1), 27.4);
     let inside = |v: IVec3| v.as_dvec3().distance(centre) < radius;
     let mut case = Case::new(IVec3::splat(64), 1, inside);
-    let bricks = case.distance.bricks.clone();
+    let bricks = case.distance.grid.bricks.clone();
     assert!(bricks.slot(IVec3::splat(3)) == Slot::Inside);
     for (n, &b) in bricks.active().iter().enumerate() {
         for k in 0..512 {
             let v = b * 8 + IVec3::new(k & 7, k >> 3 & 7, k >> 6);
-            case.distance.values[n][k as usize] = (v.as_dvec3().distance(centre) - radius) as f32;
+            case.distance.grid.values[n][k as usize] = (v.as_dvec3().distance(centre) - radius) as f32;
         }
     }
     case.interpolated = 1.0;
@@ -108,7 +108,7 @@ fn a_box_with_exact_crossings_is_exact_up_to_its_rounded_edges() {
     let inside = |v: IVec3| v.cmpge(IVec3::splat(5)).all() && v.cmplt(IVec3::new(20, 16, 33)).all();
     let case = Case::new(IVec3::splat(40), 3, inside);
     let crossing = |_| Some(Crossing { t: 0.5, triangle: 0 });
-    let solid = contour(&case.lattice, &case.distance, &crossing, &ContourOptions::default(), &Progress::none());
+    let solid = contour(&case.distance, &crossing, &ContourOptions::default(), &Progress::none());
     let volume = enclosed(&solid.unwrap().mesh) / case.lattice.h.powi(3);
     let (exact, edges): (f64, f64) = (15.0 * 11.0 * 28.0, 4.0 * (15.0 + 11.0 + 28.0));
     // each edge loses a prism of half by half a voxel, halved
@@ -127,7 +127,7 @@ fn the_collapse_brings_the_edges_of_a_box_back() {
         let normal = DVec3::AXES[triangle as usize % 3] * if triangle < 3 { -1.0 } else { 1.0 };
         Some((normal, normal.dot(case.lattice.to_model(DVec3::splat(places[triangle as usize])))))
     };
-    let raw = contour(&case.lattice, &case.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap();
+    let raw = contour(&case.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap();
     let rounded = enclosed(&raw.mesh) / case.lattice.h.powi(3);
     let solid = collapse_same_voxel(raw, &case.lattice, &planes, Merge::All, &Progress::none()).unwrap();
     assert_eq!(fault(&solid.contour.mesh), None);
@@ -141,7 +141,7 @@ fn the_collapse_brings_the_edges_of_a_box_back() {
 fn a_cancelled_contour_stops() {
     let progress = Progress::none().with_flag(Arc::new(AtomicBool::new(true)));
     let case = Case::new(IVec3::splat(20), 2, |v| v.x > 9);
-    let stopped = contour(&case.lattice, &case.distance, &|_| None, &ContourOptions::default(), &progress);
+    let stopped = contour(&case.distance, &|_| None, &ContourOptions::default(), &progress);
     assert_eq!(stopped, Err(Stopped::Interrupted));
     let planes = |_| None;
     let stopped = collapse_same_voxel(case.contour(), &case.lattice, &planes, Merge::All, &progress);

@@ -15,8 +15,8 @@ const NONE: u32 = u32::MAX;
 
 /// The filled voxels of a lattice.
 pub(super) struct Fill {
-    /// Distance to the solid, h.
-    pub own: Grid<f32>,
+    /// Distance to the solid, counted in voxels.
+    own: Grid<f32>,
     /// The filled voxels, brick by brick.
     voxels: Vec<IVec3>,
     /// Where each of them stands in that list; [`NONE`] for others.
@@ -43,7 +43,8 @@ impl Fill {
         progress: &Progress,
     ) -> Result<Self, MorphologyError> {
         let own = own_distance(original, balls.radius, lattice, progress)?;
-        let closing = balls.field(&own, lattice, progress)?;
+        let closing = balls.field(&own, progress)?.grid;
+        let own = own.grid;
         let least = (unchanged(balls.radius, lattice.h) / lattice.h) as f32;
         let of_brick = |(values, &brick): (&[f32; BRICK_VOXELS], &IVec3)| {
             let voxels = values.iter().enumerate().filter(|(_, own)| **own > 0.0);

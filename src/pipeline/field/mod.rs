@@ -188,15 +188,11 @@ pub fn field_grid(
     lattice.origin -= room * h;
     lattice.dims += 2 * IVec3::splat(room as i32);
     let wanted = FillOptions { band, max_memory: options.max_memory };
-    let mut grid = fill(&*frame.local_field(&built.field), &lattice, &wanted, progress).map_err(not_filled)?;
-    lattice = frame.global_lattice(lattice);
-    // The outcome holds distances in h.
-    let per_h = (1.0 / h) as f32;
-    grid.values.par_iter_mut().flatten().for_each(|value| *value *= per_h);
-    (grid.inside, grid.outside) = (grid.inside * per_h, grid.outside * per_h);
+    let mut field = fill(&*frame.local_field(&built.field), &lattice, &wanted, progress).map_err(not_filled)?;
+    field.lattice = frame.global_lattice(lattice);
     let report = DistanceReport { stages: stages.finish(), ..DistanceReport::default() };
     let band = band.map_or(Band::Full, |band| Band::Within(band / h));
-    Ok(DistanceOutcome::described(grid, lattice, band, report))
+    Ok(DistanceOutcome::described(field, band, report))
 }
 
 /// The values of the field at points, model units: to paint a surface with.

@@ -4,7 +4,7 @@ use glam::IVec3;
 
 use super::descend::Filled;
 use super::{ExactError, ExactOptions, Sign, assemble, checked_scope, cost, sides, tiles};
-use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice};
+use crate::lattice::{BRICK, BRICK_VOXELS, DistanceField, Lattice};
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
 
@@ -77,9 +77,9 @@ impl Slabs {
     ///
     /// # Errors
     /// See [`ExactError`].
-    pub fn finish(self, mesh: &TriMesh, lattice: &Lattice, progress: &Progress) -> Result<Grid<f32>, ExactError> {
+    pub fn finish(self, mesh: &TriMesh, lattice: &Lattice, progress: &Progress) -> Result<DistanceField, ExactError> {
         let mut raw = assemble(self.filled, &self.scope);
         sides::settle(&mut raw, mesh, lattice, Sign::Pseudonormal, progress)?;
-        Ok(raw.grid)
+        Ok(DistanceField::in_voxels(*lattice, raw.grid))
     }
 }

@@ -18,7 +18,7 @@ pub use frustum::{EDGES, Frustum};
 pub use table::{MOST_CORNERS, Section, Table};
 
 use super::exact::{ExactError, ExactOptions, Slab, Slabs};
-use crate::lattice::{BRICK, Grid, Lattice};
+use crate::lattice::{BRICK, DistanceField, Lattice};
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
 use surface::Surface;
@@ -47,7 +47,7 @@ impl Prisms {
     }
 }
 
-/// The signed distance to `mesh`, a closed, oriented manifold, in h and negative inside, at the voxels of `lattice`: what
+/// The signed distance to `mesh`, a closed, oriented manifold, at the voxels of `lattice`, counted in voxels: what
 /// [`super::exact::exact`] gives with pseudonormals, to 1e-4 h, by scan conversion of prisms on the processor. Memory holds the
 /// prisms, one slab of eight slices, and the result.
 ///
@@ -58,7 +58,7 @@ pub fn prism(
     lattice: &Lattice,
     options: &ExactOptions,
     progress: &Progress,
-) -> Result<Grid<f32>, ExactError> {
+) -> Result<DistanceField, ExactError> {
     let mut slabs = Slabs::new(mesh, lattice, options)?;
     let prisms = Prisms::new(mesh, lattice, slabs.band());
     progress.check()?;

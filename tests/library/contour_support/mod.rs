@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use glam::{DVec3, IVec3};
 use meshwright::contour::{Collapsed, Contour, ContourOptions, Crossing, Edge, Merge, collapse_same_voxel, contour};
-use meshwright::lattice::{Bricks, Grid, Lattice, brick_of, index_in_brick};
+use meshwright::lattice::{Bricks, DistanceField, Grid, Lattice, brick_of, index_in_brick};
 use meshwright::mesh::{TriMesh, ValidateOptions, validate};
 use meshwright::progress::Progress;
 
 /// A set of inside voxels in an otherwise empty lattice.
 pub struct Case {
     pub lattice: Lattice,
-    pub distance: Grid<f32>,
+    pub distance: DistanceField,
     pub seed: u64,
     /// Share of the crossings that lie at the very ends of their edge; the next share has none.
     pub extreme: f64,
@@ -61,6 +61,7 @@ impl Case {
                 distance.values[n][index_in_brick(v)] = if inside(v) { -d } else { d };
             }
         }
+        let distance = DistanceField::in_voxels(lattice, distance);
         Self { lattice, distance, seed, extreme: 0.3, interpolated: 0.2 }
     }
 
@@ -74,7 +75,7 @@ impl Case {
 
     pub fn contour(&self) -> Contour {
         let crossing = |edge| self.crossing(edge);
-        contour(&self.lattice, &self.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap()
+        contour(&self.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap()
     }
 }
 

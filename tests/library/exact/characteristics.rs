@@ -18,13 +18,13 @@ fn options(band: Band) -> ExactOptions {
 }
 
 fn field(mesh: &TriMesh, lattice: &Lattice, band: Band) -> Grid<f32> {
-    characteristics(mesh, lattice, &options(band), &Progress::none()).expect("a field")
+    characteristics(mesh, lattice, &options(band), &Progress::none()).expect("a field").grid
 }
 
 /// Compares all voxels of all bricks of the lattice with the exact field; returns how many are in the band.
 fn compare(name: &str, mesh: &TriMesh, lattice: &Lattice, band: Band) -> usize {
     let grid = field(mesh, lattice, band);
-    let truth = exact(mesh, lattice, Sign::Pseudonormal, &options(band), &Progress::none()).expect("a field");
+    let truth = exact(mesh, lattice, Sign::Pseudonormal, &options(band), &Progress::none()).expect("a field").grid;
     assert_eq!((grid.inside, grid.outside), (truth.inside, truth.outside), "{name}");
     let (end, width) = ((lattice.dims + 7) / 8 * 8, truth.outside);
     let mut within = 0;

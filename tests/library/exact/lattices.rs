@@ -18,7 +18,7 @@ fn options(band: Band) -> ExactOptions {
 }
 
 fn field(mesh: &TriMesh, lattice: &Lattice, band: Band) -> Grid<f32> {
-    exact(mesh, lattice, Sign::Pseudonormal, &options(band), &Progress::none()).expect("a field")
+    exact(mesh, lattice, Sign::Pseudonormal, &options(band), &Progress::none()).expect("a field").grid
 }
 
 /// Checks every voxel of every brick of the lattice against the point query; returns how many are in the band.

@@ -15,7 +15,7 @@ fn differences(mesh: &TriMesh, lattice: &Lattice, band: f64) -> (f64, usize, usi
     let options = ExactOptions { band: Band::Within(band), max_memory: None };
     let truth = exact(mesh, lattice, Sign::Pseudonormal, &options, &Progress::none()).expect("a field");
     let found = prism(mesh, lattice, &options, &Progress::none()).expect("a field");
-    crate::common::fields::apart(&truth, &found, band)
+    crate::common::fields::apart(&truth.grid, &found.grid, band)
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn the_number_of_threads_changes_nothing() {
     let of = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let field = pool.install(|| prism(&mesh, &lattice(&mesh, 0.02, 5), &options, &Progress::none()));
-        field.expect("a field").values.concat().iter().map(|value| value.to_bits()).collect::<Vec<u32>>()
+        field.expect("a field").grid.values.concat().iter().map(|value| value.to_bits()).collect::<Vec<u32>>()
     };
     assert_eq!(of(1), of(3));
 }

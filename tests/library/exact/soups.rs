@@ -21,7 +21,7 @@ fn soup() -> TriMesh {
 
 fn field(mesh: &TriMesh, lattice: &Lattice, sign: Sign<'_>, band: Band) -> Grid<f32> {
     let options = ExactOptions { band, max_memory: None };
-    exact(mesh, lattice, sign, &options, &Progress::none()).expect("a field")
+    exact(mesh, lattice, sign, &options, &Progress::none()).expect("a field").grid
 }
 
 /// All voxels of the lattice, and the distance of each from the triangles in h.

@@ -164,8 +164,8 @@ fn a_blurred_plane_is_the_plane_and_a_blurred_box_is_rounder() {
     let sigma = 2.0 * h;
     let blur = |field: &Shared| {
         let options = FillOptions { band: Some(blur_band(sigma)), max_memory: None };
-        let grid = fill(&**field, &lattice, &options, &Progress::none()).unwrap();
-        Sampled::new(blurred(&grid, &lattice, sigma, &Progress::none()).unwrap(), lattice)
+        let sharp = fill(&**field, &lattice, &options, &Progress::none()).unwrap();
+        Sampled::new(blurred(&sharp, sigma, &Progress::none()).unwrap())
     };
     use meshwright::field::Field;
     let plane = blur(&body(Solid::HalfSpace, [0.0, 0.0, 0.013]));

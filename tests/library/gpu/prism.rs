@@ -26,11 +26,11 @@ fn check(name: &str, mesh: &TriMesh) {
         let truth = exact(mesh, &lattice, Sign::Pseudonormal, &options, &Progress::none()).expect("a field");
         let (found, report) =
             gpu::prism(device(), mesh, &lattice, &options, false, &Progress::none()).expect("a field");
-        let (most, wrong, count) = fields::apart(&truth, &found, band);
+        let (most, wrong, count) = fields::apart(&truth.grid, &found.grid, band);
         assert!(most < 1e-4 && wrong == 0, "{name} {resolution}: {most} h, {wrong} of {count} sides");
         assert!(report.bytes_down as f64 >= 4.0 * lattice.dims.as_dvec3().element_product());
         let twin = prism(mesh, &lattice, &options, &Progress::none()).expect("a field");
-        let (most, wrong, _) = fields::apart(&twin, &found, band);
+        let (most, wrong, _) = fields::apart(&twin.grid, &found.grid, band);
         assert!(most < 3e-5 && wrong == 0, "{name} {resolution}: {most} h from the twin, {wrong} sides");
     }
 }
