@@ -4,8 +4,9 @@ use std::sync::{Arc, Mutex};
 
 use divan::Bencher;
 use glam::{DVec3, IVec3};
-use meshwright::contour::{Contour, ContourOptions, Crossing, Edge, Merge, collapse_same_voxel, contour};
+use meshwright::contour::{Contour, ContourOptions, Crossing, Edge, Ground, Merge, collapse_same_voxel, contour};
 use meshwright::lattice::{Bricks, DistanceField, Grid, Lattice, voxel_in_brick};
+use meshwright::mesh::Plane;
 use meshwright::progress::Progress;
 use rustc_hash::FxHashMap;
 
@@ -25,10 +26,10 @@ fn field(p: DVec3) -> f64 {
 }
 
 /// The tangent plane at `p`.
-fn plane(p: DVec3) -> (DVec3, f64) {
+fn plane(p: DVec3) -> Plane {
     let slope = DVec3::AXES.map(|e| field(p + e * 0.01) - field(p - e * 0.01));
     let normal = DVec3::from_array(slope).normalize_or(DVec3::Z);
-    (normal, normal.dot(p))
+    Plane { normal, offset: normal.dot(p) }
 }
 
 /// Everything that is not part of the measured work.
@@ -37,7 +38,7 @@ struct Scene {
     distance: DistanceField,
     /// Each crossing has its own plane.
     crossings: FxHashMap<Edge, Crossing>,
-    planes: Vec<(DVec3, f64)>,
+    planes: Vec<Plane>,
 }
 
 impl Scene {
@@ -69,7 +70,7 @@ impl Scene {
         };
         contour(&scene.distance, &note, &ContourOptions::default(), &Progress::none()).unwrap();
         for (triangle, (edge, t)) in (0..).zip(seen.into_inner().unwrap()) {
-            scene.crossings.insert(edge, Crossing { t, triangle });
+            scene.crossings.insert(edge, Crossing { t, triangle: Some(triangle) });
             scene.planes.push(plane(edge.voxel.as_dvec3() + DVec3::AXES[edge.axis as usize] * t));
         }
         scene
@@ -90,7 +91,10 @@ fn raw(bencher: Bencher<'_, '_>) {
 #[divan::bench(sample_count = 20)]
 fn collapse(bencher: Bencher<'_, '_>) {
     let scene = Scene::new();
-    let planes = |triangle: u32| scene.planes.get(triangle as usize).copied();
+    let planes = |ground: Ground| match ground {
+        Ground::Triangle(triangle) => scene.planes.get(triangle as usize).copied(),
+        Ground::Plane(_) | Ground::Unknown => None,
+    };
     bencher
         .with_inputs(|| scene.contour())
         .bench_values(|raw| collapse_same_voxel(raw, &scene.lattice, &planes, Merge::All, &Progress::none()).unwrap());

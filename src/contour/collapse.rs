@@ -7,16 +7,16 @@
 //! an intersection, two vertices in one place, a small body turned inside out. Each step looks at all vertices in parallel and depends on no order; it ends
 //! because the mesh without any merging is sound.
 
-use glam::{DVec3, IVec3};
+use glam::IVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use super::bodies::{shells, volumes};
 use super::merging::Merging;
 use super::star::{Fault, star_fault, triangle_fault};
-use super::{Collapsed, Contour, Merge};
+use super::{Collapsed, Contour, Ground, Merge};
 use crate::lattice::Lattice;
-use crate::mesh::{TriMesh, intersecting_triangles};
+use crate::mesh::{Plane, TriMesh, intersecting_triangles};
 use crate::progress::{Progress, Stopped};
 
 /// Searches for intersections after which everything is split again.
@@ -27,14 +27,13 @@ const PATIENT_SEARCHES: usize = 3;
 
 /// Merges the vertices of each voxel into one that lies on the planes of their source triangles.
 ///
-/// `planes` gives the unit normal n and the offset n·x of an input triangle's plane, model units;
-/// `None` for one without area. The result is as valid as the raw contour: closed, oriented,
+/// `planes` gives the plane of what a vertex lies on, model units, where that is known and a triangle has an area. The result is as valid as the raw contour: closed, oriented,
 /// manifold, without intersecting triangles, every coordinate an `f32`. Bærentzen §5, but for the
 /// place of the merged vertex: the midpoint would leave the surface.
 pub fn collapse_same_voxel(
     contour: Contour,
     lattice: &Lattice,
-    planes: &(impl Fn(u32) -> Option<(DVec3, f64)> + Sync),
+    planes: &(impl Fn(Ground) -> Option<Plane> + Sync),
     merge: Merge,
     progress: &Progress,
 ) -> Result<Collapsed, Stopped> {

@@ -7,10 +7,10 @@ use rayon::prelude::*;
 
 use super::groups::{Candidate, groups};
 use super::place::place;
-use super::{Collapsed, Contour, ContourVertex, Merge, NO_TRIANGLE};
+use super::{Collapsed, Contour, ContourVertex, Ground, Merge};
 use crate::lattice::Lattice;
-use crate::mesh::TriMesh;
 use crate::mesh::around::Around;
+use crate::mesh::{Plane, TriMesh};
 
 /// Not a member of any group.
 const ALONE: u32 = u32::MAX;
@@ -22,8 +22,8 @@ pub(super) struct Group {
     members: Range<usize>,
     /// Where they are together, model units.
     at: DVec3,
-    /// The triangle on whose plane that is.
-    triangle: u32,
+    /// What that lies on.
+    ground: Ground,
     /// Whether they are one vertex now.
     merged: bool,
 }
@@ -46,7 +46,7 @@ impl<'a> Merging<'a> {
     pub(super) fn new(
         raw: &'a Contour,
         lattice: &Lattice,
-        planes: &(impl Fn(u32) -> Option<(DVec3, f64)> + Sync),
+        planes: &(impl Fn(Ground) -> Option<Plane> + Sync),
         merge: Merge,
     ) -> Self {
         let count = raw.mesh.positions.len();
@@ -70,19 +70,17 @@ impl<'a> Merging<'a> {
                     return None;
                 }
                 let points =
-                    vertices.iter().map(|&v| (raw.mesh.positions[v as usize], raw.vertices[v as usize].triangle));
-                let (at, triangle) = place(points, voxel, lattice, planes);
+                    vertices.iter().map(|&v| (raw.mesh.positions[v as usize], raw.vertices[v as usize].ground));
+                let (at, ground) = place(points, voxel, lattice, planes);
                 if let Merge::Flat { within } = merge {
-                    let triangles = vertices.iter().map(|&v| raw.vertices[v as usize].triangle);
-                    let known = triangles.map(|t| (t != NO_TRIANGLE).then(|| planes(t)).flatten());
-                    let near = |plane: Option<(DVec3, f64)>| {
-                        plane.is_none_or(|(normal, offset)| (normal.dot(at) - offset).abs() <= within * lattice.h)
-                    };
-                    if !known.clone().all(near) || known.flatten().any(|(n, _)| !flat(n, planes, triangle)) {
+                    let known = vertices.iter().map(|&v| planes(raw.vertices[v as usize].ground));
+                    let near =
+                        |plane: Option<Plane>| plane.is_none_or(|plane| plane.distance(at).abs() <= within * lattice.h);
+                    if !known.clone().all(near) || known.flatten().any(|plane| !flat(plane.normal, planes, ground)) {
                         return None;
                     }
                 }
-                Some(Group { members, at, triangle, merged: characteristic == 1 })
+                Some(Group { members, at, ground, merged: characteristic == 1 })
             })
             .collect();
         for (id, group) in merging.groups.iter().enumerate().filter(|(_, g)| g.merged) {
@@ -220,7 +218,7 @@ impl<'a> Merging<'a> {
             starts.push(members.len() as u32);
         }
         let source = |&v: &u32| match self.merged_group(v) {
-            Some(id) => ContourVertex { triangle: self.groups[id as usize].triangle, ..self.raw.vertices[v as usize] },
+            Some(id) => ContourVertex { ground: self.groups[id as usize].ground, ..self.raw.vertices[v as usize] },
             None => self.raw.vertices[v as usize],
         };
         let merged = self.groups.iter().filter(|g| g.merged).count();
@@ -239,7 +237,7 @@ impl<'a> Merging<'a> {
     }
 }
 
-/// Whether a normal agrees with that of `triangle` (20°), either way round.
-fn flat(normal: DVec3, planes: &impl Fn(u32) -> Option<(DVec3, f64)>, triangle: u32) -> bool {
-    planes(triangle).is_none_or(|(other, _)| normal.dot(other).abs() > 0.94)
+/// Whether a normal agrees with that of `ground` (20°), either way round.
+fn flat(normal: DVec3, planes: &impl Fn(Ground) -> Option<Plane>, ground: Ground) -> bool {
+    planes(ground).is_none_or(|other| normal.dot(other.normal).abs() > 0.94)
 }

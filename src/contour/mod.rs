@@ -34,16 +34,13 @@ use crate::lattice::DistanceField;
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
 
-/// Stands for a source triangle where there is none.
-pub const NO_TRIANGLE: u32 = u32::MAX;
-
 /// The exact crossing of the surface with a lattice edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
     /// Place on the edge: 0 at its lower voxel, 1 at its upper one.
     pub t: f64,
-    /// The input triangle that is crossed, or [`NO_TRIANGLE`].
-    pub triangle: u32,
+    /// The triangle of the input that is crossed, where it is one.
+    pub triangle: Option<u32>,
 }
 
 /// The lattice edge from `voxel` to the next voxel along `axis`.
@@ -69,11 +66,24 @@ impl Default for ContourOptions {
     }
 }
 
+/// What a vertex of a contour lies on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Ground {
+    /// Nothing that is known.
+    #[default]
+    Unknown,
+    /// The triangle of the input with this number.
+    Triangle(u32),
+    /// A plane where the input has no triangle, by its number in a list that comes with the contour: the lid over a hole, or
+    /// the tangent plane of a level.
+    Plane(u32),
+}
+
 /// Where a vertex comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ContourVertex {
-    /// The input triangle it lies on, or [`NO_TRIANGLE`].
-    pub triangle: u32,
+    /// What it lies on.
+    pub ground: Ground,
     /// The voxel inside the solid to whose cube it belongs.
     pub voxel: IVec3,
     /// The voxel at the other end of its lattice edge, outside of the solid.

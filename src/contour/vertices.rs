@@ -4,7 +4,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::signs::{Brick, Crossed, Signs, Tile};
-use super::{ContourOptions, ContourVertex, Crossing, Edge, NO_TRIANGLE};
+use super::{ContourOptions, ContourVertex, Crossing, Edge, Ground};
 use crate::lattice::{BRICK, Grid, Lattice, Slot};
 use crate::progress::{Progress, Stopped};
 
@@ -89,8 +89,8 @@ pub(super) fn vertices(
         let place = if place.is_finite() { place.clamp(margin, 1.0 - margin) } else { 0.5 };
         let (low, high) = (edge.voxel, edge.voxel + IVec3::AXES[axis]);
         let (voxel, outside) = if inside_low { (low, high) } else { (high, low) };
-        let triangle = hit.map_or(NO_TRIANGLE, |c| c.triangle);
-        (rounded(lattice, edge, place), place, ContourVertex { triangle, voxel, outside })
+        let ground = hit.and_then(|c| c.triangle).map_or(Ground::Unknown, Ground::Triangle);
+        (rounded(lattice, edge, place), place, ContourVertex { ground, voxel, outside })
     };
     let parts: Vec<Vertices> = signs
         .bricks

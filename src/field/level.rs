@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::fill::touches_border;
 use super::passages::Passages;
 use super::{Facet, Field, FillError, FillOptions, Sample, fill};
-use crate::contour::{Contour, ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
+use crate::contour::{Contour, ContourOptions, Crossing, Edge, Ground, contour};
 use crate::lattice::Lattice;
 use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
@@ -23,7 +23,7 @@ const ON_SOURCE: f64 = 1e-5;
 
 /// The zero level of a field.
 pub struct Level {
-    /// The surface; each vertex's `triangle` is its own number.
+    /// The surface; each vertex lies on the plane with its own number.
     pub contour: Contour,
     /// For each vertex of the contour the tangent plane, model units, normal outwards.
     pub planes: Vec<Plane>,
@@ -60,7 +60,7 @@ pub fn level(
     let cut_off = touches_border(&values);
     let passages = Passages::of(field, &values, progress)?;
     progress.share(0.8);
-    let crossing = |edge: Edge| Some(Crossing { t: passages.at(edge)?, triangle: NO_TRIANGLE });
+    let crossing = |edge: Edge| Some(Crossing { t: passages.at(edge)?, triangle: None });
     let mut contour = contour(&values, &crossing, &ContourOptions::default(), progress)?;
     drop(values);
     progress.share(0.9);
@@ -69,7 +69,7 @@ pub fn level(
     progress.check()?;
     let facets = positions.par_iter().map(|&p| field.facet(p, ON_SOURCE * lattice.h)).collect();
     progress.check()?;
-    contour.vertices.iter_mut().zip(0..).for_each(|(vertex, n)| vertex.triangle = n);
+    contour.vertices.iter_mut().zip(0..).for_each(|(vertex, n)| vertex.ground = Ground::Plane(n));
     Ok(Level { contour, planes, facets, cut_off })
 }
 

@@ -11,7 +11,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::crease::{Crease, FLAT, Place, crease, nearest};
 use super::facets::{Facets, Sides};
-use super::surface::{NOT_KEPT, Surface, faces_out, rounded, shape};
+use super::surface::{OfSource, Surface, faces_out, rounded, shape};
 
 /// A corner nearer to a point of a crease than this, h, is that point.
 const SAME: f64 = 0.02;
@@ -126,12 +126,12 @@ fn second_points(
 
 /// Cuts triangles at points on their edges.
 pub(super) fn subdivide(cut: &mut Cut, points: &[([u32; 2], Crease)]) {
-    let Cut { surface: Surface { mesh, sides, kept, facets }, origin, .. } = cut;
+    let Cut { surface: Surface { mesh, sides, vertices_of, triangles_of }, origin, .. } = cut;
     let first = mesh.positions.len() as u32;
     let ids: FxHashMap<[u32; 2], u32> = points.iter().zip(first..).map(|(&(edge, _), id)| (edge, id)).collect();
     mesh.positions.extend(points.iter().map(|(_, c)| rounded(c.place.at)));
     sides.extend(points.iter().map(|(_, c)| c.place.sides));
-    kept.resize(mesh.positions.len(), NOT_KEPT);
+    vertices_of.resize(mesh.positions.len(), OfSource::NONE);
     let on = |a: u32, b: u32| ids.get(&[a.min(b), a.max(b)]).copied();
     let cuts_of = |&[a, b, c]: &[u32; 3]| {
         let cuts = [on(a, b), on(b, c), on(c, a)];
@@ -141,15 +141,15 @@ pub(super) fn subdivide(cut: &mut Cut, points: &[([u32; 2], Crease)]) {
     let mut triangles = Vec::with_capacity(mesh.triangles.len() + 2 * points.len());
     let mut origins = Vec::with_capacity(triangles.capacity());
     let mut parts_of = Vec::with_capacity(triangles.capacity());
-    for (((&corners, cuts), &id), &facet) in mesh.triangles.iter().zip(cuts).zip(origin.iter()).zip(facets.iter()) {
+    for (((&corners, cuts), &id), &of) in mesh.triangles.iter().zip(cuts).zip(origin.iter()).zip(triangles_of.iter()) {
         match cuts {
             Some(cuts) => split(corners, cuts, &mesh.positions, &mut triangles),
             None => triangles.push(corners),
         }
         origins.resize(triangles.len(), id);
-        parts_of.resize(triangles.len(), facet);
+        parts_of.resize(triangles.len(), of);
     }
-    *facets = parts_of;
+    *triangles_of = parts_of;
     mesh.triangles = triangles;
     *origin = origins;
 }
@@ -178,11 +178,11 @@ fn raise_corners(cut: &mut Cut, facets: &Facets<'_>, h: f64, first: u32, spared:
             None => {
                 let ([a, b, c], z) = (corners, cut.surface.mesh.positions.len() as u32);
                 let next = cut.surface.mesh.triangles.len() as u32;
-                cut.surface.add(place, NOT_KEPT);
+                cut.surface.add(place, OfSource::NONE);
                 cut.surface.mesh.triangles[t as usize] = [a, b, z];
                 cut.surface.mesh.triangles.extend([[b, c, z], [c, a, z]]);
                 cut.origin.extend([cut.origin[t as usize]; 2]);
-                cut.surface.facets.extend([cut.surface.facets[t as usize]; 2]);
+                cut.surface.triangles_of.extend([cut.surface.triangles_of[t as usize]; 2]);
                 reach_out(cut, facets, h, vec![t, next, next + 1], (&mut waiting, &with_half));
             }
         }

@@ -7,7 +7,7 @@ use super::crease::{Crease, FLAT, Place, crease};
 use super::cut::{Spared, edges_of, inset};
 use super::facets::{Facets, SMOOTH};
 use super::snap::snap;
-use super::surface::{NOT_KEPT, Surface, rounded};
+use super::surface::{Surface, rounded};
 use super::{FitOptions, FitReport};
 use crate::mesh::around::Around;
 
@@ -218,9 +218,9 @@ impl<'a> Fitting<'a> {
 
 /// Moves vertices that lie beside the plane of their one facet onto it.
 fn flatten(surface: &mut Surface, facets: &Facets<'_>, h: f64) -> Vec<u32> {
-    let (sides, kept, positions) = (&surface.sides, &surface.kept, &mut surface.mesh.positions);
+    let (sides, vertices_of, positions) = (&surface.sides, &surface.vertices_of, &mut surface.mesh.positions);
     let moved = positions.par_iter_mut().zip(sides).enumerate().filter_map(|(v, (at, sides))| {
-        if kept[v] != NOT_KEPT {
+        if vertices_of[v].number().is_some() {
             return None;
         }
         let mut own = sides.iter();

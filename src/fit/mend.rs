@@ -175,7 +175,7 @@ impl Mending<'_> {
         let mut renumbered = Vec::with_capacity(touched.len());
         let mut triangles = Vec::with_capacity(self.edges.live_triangles());
         let mut origin = Vec::with_capacity(triangles.capacity());
-        let mut facets = Vec::with_capacity(triangles.capacity());
+        let mut triangles_of = Vec::with_capacity(triangles.capacity());
         let mut next = touched.iter().peekable();
         for t in 0..self.edges.triangle_ids() as u32 {
             let is_touched = next.next_if_eq(&&t).is_some();
@@ -187,11 +187,11 @@ impl Mending<'_> {
             }
             triangles.push(self.edges.triangle(t));
             origin.push(self.cut.origin[t as usize]);
-            facets.push(self.cut.surface.facets[t as usize]);
+            triangles_of.push(self.cut.surface.triangles_of[t as usize]);
             number += 1;
         }
         self.cut.surface.mesh.triangles = triangles;
-        self.cut.surface.facets = facets;
+        self.cut.surface.triangles_of = triangles_of;
         self.cut.origin = origin;
         renumbered
     }

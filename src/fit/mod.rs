@@ -27,10 +27,10 @@ mod source;
 mod surface;
 mod zone;
 
-pub use facets::{Facets, Side, Sides, Wanted};
+pub use facets::{FacetId, Facets, Side, Sides, Wanted};
 pub use source::{SimpleSource, simplified_source};
+pub use surface::Surface;
 pub(crate) use surface::rounded;
-pub use surface::{NOT_KEPT, Surface};
 
 use crate::ldi::Evidence;
 use crate::progress::{Progress, Stopped};

@@ -293,11 +293,16 @@ impl<'a> Work<'a> {
         let compacted = edges.compacted();
         let positions = compacted.vertices.iter().map(|&v| surface.at(v)).collect();
         let sides = compacted.vertices.iter().map(|&v| surface.sides[v as usize]).collect();
-        let kept = compacted.vertices.iter().map(|&v| surface.kept[v as usize]).collect();
+        let vertices_of = compacted.vertices.iter().map(|&v| surface.vertices_of[v as usize]).collect();
         let live = (0..edges.triangle_ids()).filter(|&t| edges.is_live_triangle(t as u32));
-        let (facets, off) = live.map(|t| (surface.facets[t], self.off[t])).unzip();
+        let (triangles_of, off) = live.map(|t| (surface.triangles_of[t], self.off[t])).unzip();
         Simple {
-            surface: Surface { mesh: TriMesh { positions, triangles: compacted.triangles }, sides, kept, facets },
+            surface: Surface {
+                mesh: TriMesh { positions, triangles: compacted.triangles },
+                sides,
+                vertices_of,
+                triangles_of,
+            },
             off,
         }
     }

@@ -1,9 +1,9 @@
 //! Simplification of a source mesh that is right already.
 
 use super::FitOptions;
-use super::facets::{Facets, Side, Sides};
+use super::facets::{FacetId, Facets, Side, Sides};
 use super::simplify::simplified;
-use super::surface::{NOT_KEPT, Surface};
+use super::surface::{OfSource, Surface};
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
 
@@ -29,20 +29,22 @@ pub fn simplified_source(
     progress: &Progress,
 ) -> Result<Option<SimpleSource>, Stopped> {
     let facets = Facets::new(mesh, []).with_classes(classes);
-    let mut sides = vec![Sides::default(); mesh.positions.len()];
-    for (t, corners) in (0..).zip(&mesh.triangles) {
-        corners.iter().for_each(|&v| sides[v as usize].add(Side::new(t, false)));
-    }
-    let surface = Surface {
-        mesh: mesh.clone(),
-        sides,
-        kept: (0..mesh.positions.len() as u32).collect(),
-        facets: vec![NOT_KEPT; mesh.triangles.len()],
-    };
+    let vertices_of = (0..mesh.positions.len() as u32).map(OfSource::new).collect();
+    let surface = Surface { vertices_of, ..Surface::new(mesh.clone(), own_sides(mesh)) };
     let options = FitOptions { tolerance: options.kept_tolerance, ..*options };
     let untouched = vec![0.0; mesh.triangles.len()];
     let simple = simplified((&surface, &untouched), &facets, h, &options, progress)?;
     let Some(simple) = simple.map(|simple| simple.surface) else { return Ok(None) };
-    let of = (0..simple.mesh.triangles.len() as u32).map(|t| simple.facet(&facets, t)).collect();
+    let on = |t: u32| simple.facet(&facets, t).and_then(|facet| facets.triangle(facet));
+    let of = (0..simple.mesh.triangles.len() as u32).map(on).collect();
     Ok(Some(SimpleSource { mesh: simple.mesh, of }))
+}
+
+/// The triangles that each vertex of a mesh lies on, as facets of the mesh itself.
+pub(super) fn own_sides(mesh: &TriMesh) -> Vec<Sides> {
+    let mut sides = vec![Sides::default(); mesh.positions.len()];
+    for (t, corners) in (0..).zip(&mesh.triangles) {
+        corners.iter().for_each(|&v| sides[v as usize].add(Side::new(FacetId::of_triangle(t), false)));
+    }
+    sides
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::crease::Place;
-use super::facets::{Facets, SMOOTH, Side, Sides};
+use super::facets::{FacetId, Facets, SMOOTH, Side, Sides};
 use crate::mesh::TriMesh;
 
 /// A triangle whose centre lies this part of its height beyond the source is not on it.
@@ -17,31 +17,60 @@ pub struct Surface {
     pub mesh: TriMesh,
     /// One for each vertex.
     pub sides: Vec<Sides>,
-    /// For each vertex the vertex of the source that it is, or [`NOT_KEPT`].
-    pub kept: Vec<u32>,
-    /// For each triangle the triangle of the source that it was, before flat parts were simplified, or [`NOT_KEPT`].
-    pub facets: Vec<u32>,
+    /// For each vertex the vertex of the source that it is.
+    pub(super) vertices_of: Vec<OfSource>,
+    /// For each triangle the triangle of the source that it was, before flat parts were simplified.
+    pub(super) triangles_of: Vec<OfSource>,
 }
 
-/// A vertex or triangle that is none of the source's.
-pub const NOT_KEPT: u32 = u32::MAX;
+/// The number of a vertex or triangle of the source, or none, in four bytes: surfaces have millions of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct OfSource(u32);
+
+impl OfSource {
+    /// What is none of the source's.
+    pub(super) const NONE: Self = Self(u32::MAX);
+
+    /// Number `number` of the source's.
+    pub(super) fn new(number: u32) -> Self {
+        Self(number)
+    }
+
+    /// The number.
+    #[inline]
+    pub(super) fn number(self) -> Option<u32> {
+        (self != Self::NONE).then_some(self.0)
+    }
+}
 
 impl Surface {
     /// A surface none of whose vertices is one of the source's.
     pub fn new(mesh: TriMesh, sides: Vec<Sides>) -> Self {
-        let (kept, facets) = (vec![NOT_KEPT; mesh.positions.len()], vec![NOT_KEPT; mesh.triangles.len()]);
-        Self { mesh, sides, kept, facets }
+        let vertices_of = vec![OfSource::NONE; mesh.positions.len()];
+        let triangles_of = vec![OfSource::NONE; mesh.triangles.len()];
+        Self { mesh, sides, vertices_of, triangles_of }
     }
 
-    pub(super) fn add(&mut self, place: Place, kept: u32) {
+    /// The vertex of the source that a vertex is, if it is one.
+    pub fn source_vertex(&self, vertex: u32) -> Option<u32> {
+        self.vertices_of[vertex as usize].number()
+    }
+
+    /// The triangle of the source that a triangle was before flat parts were simplified, if it was one.
+    pub fn source_triangle(&self, t: u32) -> Option<u32> {
+        self.triangles_of[t as usize].number()
+    }
+
+    /// Adds a vertex, and says which vertex of the source it is.
+    pub(super) fn add(&mut self, place: Place, of: OfSource) {
         self.mesh.positions.push(place.at);
         self.sides.push(place.sides);
-        self.kept.push(kept);
+        self.vertices_of.push(of);
     }
 
     /// Whether a vertex is one of the source's.
     pub(super) fn is_kept(&self, vertex: u32) -> bool {
-        self.kept[vertex as usize] != NOT_KEPT
+        self.source_vertex(vertex).is_some()
     }
 
     pub(super) fn at(&self, vertex: u32) -> DVec3 {
@@ -82,22 +111,19 @@ impl Surface {
     /// The facets around a vertex, as seen by a triangle with this normal: all of them for one of the source's, which has
     /// more than [`Sides`] hold.
     pub(super) fn facets_at(&self, facets: &Facets<'_>, vertex: u32, normal: DVec3) -> Vec<Side> {
-        if !self.is_kept(vertex) {
-            return self.sides[vertex as usize].iter().collect();
+        match self.source_vertex(vertex) {
+            Some(own) => facets.around(own).iter().map(|&t| facets.facing(t, normal)).collect(),
+            None => self.sides[vertex as usize].iter().collect(),
         }
-        let facing = |&t: &u32| Side::new(t, facets.plane(Side::new(t, false)).normal.dot(normal) < 0.0);
-        facets.around(self.kept[vertex as usize]).iter().map(facing).collect()
     }
 
     /// The facet that a triangle lies on; `None` where nothing is known.
-    pub fn facet(&self, facets: &Facets<'_>, t: u32) -> Option<u32> {
+    pub fn facet(&self, facets: &Facets<'_>, t: u32) -> Option<FacetId> {
         let corners = self.places(t);
         let centre = corners.iter().map(|c| c.at).sum::<DVec3>() / 3.0;
         let normal = shape(corners.map(|c| c.at)).0.normalize_or_zero();
-        let own = self.facets[t as usize];
-        if own != NOT_KEPT {
-            let side = Side::new(own, facets.plane(Side::new(own, false)).normal.dot(normal) < 0.0);
-            return Some(facets.walk(side, centre).0.facet());
+        if let Some(own) = self.source_triangle(t) {
+            return Some(facets.walk(facets.facing(own, normal), centre).0.facet());
         }
         let around = self.mesh.triangles[t as usize].map(|v| self.facets_at(facets, v, normal));
         let known = around.iter().filter(|sides| !sides.is_empty()).count();

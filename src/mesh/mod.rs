@@ -14,6 +14,7 @@ mod hull;
 pub(crate) mod least_squares;
 mod mass;
 mod nearest_point;
+pub(crate) mod neighbours;
 mod packet;
 mod plane;
 pub(crate) mod predicates;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::offset::MARGIN;
 use super::remains::Search;
 use super::{Balls, Body, MorphologyError, Offset, Region};
-use crate::contour::{ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
+use crate::contour::{ContourOptions, Crossing, Edge, Ground, contour};
 use crate::lattice::{BRICK, DistanceField, Grid, Lattice, voxel_in_brick};
 use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
@@ -38,8 +38,7 @@ pub(super) const BESIDE: f64 = 0.6;
 const MOST_SAMPLES: usize = 64;
 
 /// The closing (for a positive radius of the balls) or opening of `original` that the balls leave. Where that changes nothing, the
-/// vertices lie on triangles of `original` and have their numbers; elsewhere those of planes, numbered after them. With a
-/// `region` nothing changes elsewhere.
+/// vertices lie on triangles of `original`, elsewhere on planes. With a `region` nothing changes elsewhere.
 ///
 /// # Errors
 /// Those of [`exact`], and a stop.
@@ -65,17 +64,17 @@ pub fn closed(
         let stays = |t: &f64| !free || balls.at(at(*t), h).0.abs() < unchanged(balls.radius, h);
         let before = voxels.map(|voxel| own.length(own.grid.get(voxel)));
         match original.passage(ends, before, 0.0).filter(stays) {
-            Some(t) => Some(Crossing { t, triangle: original.distance().at(at(t))?.triangle }),
-            None => Some(Crossing { t: balls.passage(ends)?, triangle: NO_TRIANGLE }),
+            Some(t) => Some(Crossing { t, triangle: Some(original.distance().at(at(t))?.triangle) }),
+            None => Some(Crossing { t: balls.passage(ends)?, triangle: None }),
         }
     };
     let mut contour = contour(&field, &crossing, &ContourOptions::default(), progress)?;
     let made: Vec<usize> =
-        (0..contour.vertices.len()).filter(|&v| contour.vertices[v].triangle == NO_TRIANGLE).collect();
+        (0..contour.vertices.len()).filter(|&v| contour.vertices[v].ground == Ground::Unknown).collect();
     let planes: Vec<Plane> = made.par_iter().map(|&v| balls.tangent(contour.mesh.positions[v], h)).collect();
     progress.check()?;
-    for (&v, n) in made.iter().zip(original.mesh.triangles.len() as u32..) {
-        contour.vertices[v].triangle = n;
+    for (&v, n) in made.iter().zip(0..) {
+        contour.vertices[v].ground = Ground::Plane(n);
     }
     let search = Search { body: original, level: 0.0, side: -balls.radius.signum(), lattice, field: &own.grid };
     let mut remains = search.remains(progress)?;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::remains::{Remain, Search};
 use super::{Body, MorphologyError};
-use crate::contour::{Contour, ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
+use crate::contour::{Contour, ContourOptions, Crossing, Edge, Ground, contour};
 use crate::lattice::{BRICK, Bricks, DistanceField, Lattice, voxel_in_brick};
 use crate::mesh::Plane;
 use crate::progress::Progress;
@@ -21,9 +21,9 @@ const LIKELY: f64 = 1.001;
 
 /// A level of a field.
 pub struct Offset {
-    /// The surface; each vertex's `triangle` is the number of its plane.
+    /// The surface; its vertices lie on the solid's triangles or on planes.
     pub contour: Contour,
-    /// The tangent planes, model units, normals outwards.
+    /// The planes that vertices lie on, tangent to the level, model units, normals outwards.
     pub planes: Vec<Plane>,
     /// The level around what is too thin for any voxel to lie in it: of the outside for a level above 0, of the inside for one
     /// below.
@@ -43,12 +43,12 @@ pub fn offset(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progres
         let value = |voxel: IVec3| field.length(field.grid.get(voxel)) + level;
         let values = [value(edge.voxel), value(edge.voxel + IVec3::AXES[edge.axis as usize])];
         let t = body.passage([from, to], values, level)?;
-        Some(Crossing { t, triangle: NO_TRIANGLE })
+        Some(Crossing { t, triangle: None })
     };
     let mut contour = contour(&field, &crossing, &ContourOptions::default(), progress)?;
     let planes: Vec<Plane> = contour.mesh.positions.par_iter().map(|&p| tangent(body, level, p, lattice.h)).collect();
     progress.check()?;
-    contour.vertices.iter_mut().zip(0..).for_each(|(vertex, n)| vertex.triangle = n);
+    contour.vertices.iter_mut().zip(0..).for_each(|(vertex, n)| vertex.ground = Ground::Plane(n));
     let remains = Search { body, level, side: level.signum(), lattice, field: &field.grid }.remains(progress)?;
     Ok(Offset { contour, planes, remains })
 }

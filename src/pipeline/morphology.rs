@@ -289,7 +289,7 @@ impl Run<'_> {
             let (fit, report) = fit(&surface, &facets, &evidence, self.h, &options, self.progress)?;
             (surface, fitted) = (fit, Some(report));
         }
-        let own = |t: u32| surface.facet(&facets, t).filter(|&facet| (facet as usize) < source.triangles.len());
+        let own = |t: u32| surface.facet(&facets, t).and_then(|facet| facets.triangle(facet));
         let own = (0..surface.mesh.triangles.len() as u32).map(own).collect();
         let too_thin = self.left_out(&offset.remains, &surface.mesh);
         Ok(Made { surface, own, fit: fitted, h: self.h, too_thin })

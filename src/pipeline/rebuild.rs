@@ -110,7 +110,7 @@ impl Job<'_> {
                 reason: solid::why_nothing(&spans, [h, prepare::finest(&bounds)], hits, soup.operands.count()),
             });
         }
-        let lids = refine::lids(&mut raw, (&soup, &lattice), &winding, expression, progress)?;
+        let lids = refine::lids(&mut raw, &lattice, &winding, expression, progress)?;
         stages.begin("collapse")?;
         let facets = Facets::new(&soup.mesh, lids).with_classes(soup.classes(&options.classes));
         let mut surface = refine::merged(raw, &facets, &lattice, options, progress)?;

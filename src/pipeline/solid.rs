@@ -4,9 +4,9 @@ use glam::IVec3;
 
 use super::prepare::TYPED;
 use super::{Error, LdiReport, Report, ThinRegion, ThinReport};
-use crate::contour::{Crossing, Edge, NO_TRIANGLE};
+use crate::contour::{Crossing, Edge};
 use crate::digits;
-use crate::fit::{NOT_KEPT, Surface};
+use crate::fit::Surface;
 use crate::lattice::{DistanceField, Grid, Lattice};
 use crate::ldi::{Layers, Lengths, Spans, THIN, ThinPlace, edge_crossing, lengths, thin_places};
 use crate::mesh::Plane;
@@ -37,12 +37,12 @@ pub(super) fn crossings<'a>(
     move |edge| {
         let lower_inside = distance.grid.get(edge.voxel) < 0.0;
         if let Some((t, hit)) = edge_crossing(spans, edge.voxel, edge.axis as usize, lower_inside) {
-            return Some(Crossing { t, triangle: hit.triangle() });
+            return Some(Crossing { t, triangle: Some(hit.triangle()) });
         }
         let upper = edge.voxel + IVec3::AXES[edge.axis as usize];
         let (inside, outside) = if lower_inside { (edge.voxel, upper) } else { (upper, edge.voxel) };
         let t = lid(inside, outside)?.t;
-        Some(Crossing { t: if lower_inside { t } else { 1.0 - t }, triangle: NO_TRIANGLE })
+        Some(Crossing { t: if lower_inside { t } else { 1.0 - t }, triangle: None })
     }
 }
 
@@ -91,7 +91,8 @@ const LEAST_RAYS: usize = 4;
 /// Where walls and gaps are thinner than the lattice holds, of those that were not kept as they are.
 pub(super) fn thin_regions(spans: &[Spans], planes: &[Plane], surface: &Surface, lattice: &Lattice) -> Vec<ThinRegion> {
     let mut kept = vec![false; planes.len()];
-    surface.facets.iter().filter(|&&t| t != NOT_KEPT).for_each(|&t| kept[t as usize] = true);
+    let triangles = 0..surface.mesh.triangles.len() as u32;
+    triangles.filter_map(|t| surface.source_triangle(t)).for_each(|t| kept[t as usize] = true);
     let region = |place: &ThinPlace| ThinRegion {
         gap: place.gap,
         min: lattice.to_model(place.min).to_array(),

@@ -82,7 +82,7 @@ pub(super) fn keep(
 /// Where the contour goes over from one to another of triangles that meet.
 fn meeting_places(home: &Surface, kept: &Kept) -> Vec<DVec3> {
     let meets = |v: u32| {
-        let facets = home.sides[v as usize].iter().map(|s| s.facet() as usize);
+        let facets = home.sides[v as usize].iter().map(|s| s.facet().index());
         facets.filter(|&t| kept.meets.get(t) == Some(&true)).collect::<Vec<_>>()
     };
     let apart = |a: usize, b: usize| {

@@ -6,8 +6,8 @@ use rustc_hash::FxHashMap;
 
 use super::super::crease::{Crease, Place};
 use super::super::cut::{Cut, subdivide};
-use super::super::facets::{Facets, Side, Sides};
-use super::super::surface::{NOT_KEPT, Surface, rounded, shape};
+use super::super::facets::{FacetId, Facets, Side, Sides};
+use super::super::surface::{OfSource, Surface, rounded, shape};
 use super::border::{Border, NONE, OnBorder};
 use super::choose::Kept;
 use super::rings::{Ring, Stop, matched};
@@ -72,7 +72,7 @@ pub(super) fn joined(
 /// The component whose kept triangles a vertex lies on, or [`NONE`].
 fn label(sides: &Sides, kept: &Kept, border: &Border) -> u32 {
     let component = |side: Side| {
-        let facet = side.facet() as usize;
+        let facet = side.facet().index();
         let on_kept = facet < kept.is.len() && kept.is[facet] && kept.reversed[facet] == side.reversed();
         if on_kept { border.component[facet] } else { NONE }
     };
@@ -228,7 +228,7 @@ impl Joint<'_> {
                 }
                 if of_home[v as usize] == NONE {
                     of_home[v as usize] = surface.mesh.positions.len() as u32;
-                    surface.add(self.home.place(v), NOT_KEPT);
+                    surface.add(self.home.place(v), OfSource::NONE);
                 }
                 of_home[v as usize]
             });
@@ -255,7 +255,7 @@ impl Joint<'_> {
                 }
             }
         }
-        surface.facets.resize(surface.mesh.triangles.len(), NOT_KEPT);
+        surface.triangles_of.resize(surface.mesh.triangles.len(), OfSource::NONE);
         Joined { surface, first, seam: normals }
     }
 
@@ -266,7 +266,10 @@ impl Joint<'_> {
             for v in self.kept.mesh.triangles[facet as usize] {
                 if of_source[v as usize] == NONE {
                     of_source[v as usize] = surface.mesh.positions.len() as u32;
-                    surface.add(Place { at: self.kept.mesh.positions[v as usize], sides: Sides::default() }, v);
+                    surface.add(
+                        Place { at: self.kept.mesh.positions[v as usize], sides: Sides::default() },
+                        OfSource::new(v),
+                    );
                 }
             }
         }
@@ -275,7 +278,7 @@ impl Joint<'_> {
             for (t, corners) in self.kept.mesh.triangles.iter().enumerate() {
                 if self.kept.is[t] == kept_ones {
                     for id in corners.iter().map(|&v| of_source[v as usize]).filter(|&id| id != NONE) {
-                        surface.sides[id as usize].add(Side::new(t as u32, self.kept.reversed[t]));
+                        surface.sides[id as usize].add(self.kept.side(t as u32));
                     }
                 }
             }
@@ -290,14 +293,16 @@ impl Joint<'_> {
             for &(point, segment, at) in &ring.places {
                 let facet = self.border.segments[segment as usize].facet;
                 let mut sides = self.cut.surface.sides[(self.first + point) as usize];
-                sides.add(Side::new(facet, self.kept.reversed[facet as usize]));
+                sides.add(self.kept.side(facet));
                 if let Some(across) = self.facets.across(facet, self.edge_of(segment)) {
                     sides = Sides::of(
-                        [Side::new(across, self.kept.reversed[facet as usize])].into_iter().chain(sides.iter()),
+                        [Side::new(FacetId::of_triangle(across), self.kept.reversed[facet as usize])]
+                            .into_iter()
+                            .chain(sides.iter()),
                     );
                 }
                 of_point[point as usize] = surface.mesh.positions.len() as u32;
-                surface.add(Place { at: rounded(at), sides }, NOT_KEPT);
+                surface.add(Place { at: rounded(at), sides }, OfSource::NONE);
             }
             for &(point, stop) in &ring.points {
                 if let Stop::Vertex(v) = ring.stops[stop as usize] {
@@ -346,7 +351,7 @@ impl Joint<'_> {
                 fan(&mut parts, from, to, &ids);
             }
             surface.mesh.triangles.extend(parts);
-            surface.facets.resize(surface.mesh.triangles.len(), facet);
+            surface.triangles_of.resize(surface.mesh.triangles.len(), OfSource::new(facet));
         }
     }
 

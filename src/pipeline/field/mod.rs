@@ -16,6 +16,7 @@ use super::{
     DistanceReport, Dropped, Error, Options, Outcome, Report, TriangleCounts, TriangleSource, VoxelSize, prepare,
     refine, stages,
 };
+use crate::contour::Ground;
 use crate::digits;
 use crate::field::filter::FilterError;
 use crate::field::{Extent, Field, FillError, FillOptions, LevelError, Shared, fill, level};
@@ -91,10 +92,11 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
     }
     let mut contour = level.contour;
     let sources = &built.sources;
-    contour.vertices.iter_mut().zip(&level.facets).zip(0u32..).for_each(|((vertex, facet), n)| {
-        let own = sources.mesh.triangles.len() as u32 + n;
-        vertex.triangle = facet.and_then(|facet| sources.number(facet)).unwrap_or(own);
-    });
+    for (vertex, facet) in contour.vertices.iter_mut().zip(&level.facets) {
+        if let Some(triangle) = facet.and_then(|facet| sources.number(facet)) {
+            vertex.ground = Ground::Triangle(triangle);
+        }
+    }
     let wanted = |p: DVec3| off(field, p, lattice.h);
     let source = &frame.local(std::slice::from_ref(&sources.mesh))[0];
     let facets = Facets::new(source, level.planes).with_wanted(&wanted);
@@ -107,7 +109,7 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         let (fit, report) = fit(&surface, &facets, &Evidence::default(), lattice.h, &options, progress)?;
         (surface, fitted) = (fit, Some(report));
     }
-    let source = |t: u32| sources.origin(surface.facet(&facets, t));
+    let source = |t: u32| sources.origin(surface.facet(&facets, t).and_then(|facet| facets.triangle(facet)));
     let origins: Vec<TriangleSource> = (0..surface.mesh.triangles.len() as u32).into_par_iter().map(source).collect();
     let made = origins.iter().filter(|source| **source == TriangleSource::Closed).count();
     let report = Report {
