@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use robust::{Coord, orient2d};
 
-use super::signs::{Brick, Crossed, Signs, Tile};
+use super::signs::{Brick, Crossed, Neighbour, Signs};
 use super::table::{LOOPS, Loop, MOST_VERTICES, edge_ends};
 use super::vertices::{TASK, Vertices, bits, locate, value};
 use crate::lattice::{Grid, trilinear};
@@ -104,7 +104,7 @@ impl Tables<'_> {
         for (i, &edge) in shape.edges.iter().enumerate() {
             let low = edge_ends(edge).0 as usize;
             let [x, y, z] = [0, 1, 2].map(|axis| cell.at[axis] + (low >> axis & 1));
-            let (Tile::Visited(owner), index) = locate(cell.brick, x, y, z) else { return None };
+            let (Neighbour::Visited(owner), index) = locate(cell.brick, x, y, z) else { return None };
             let crossed = &self.crossed[owner as usize];
             let local = crossed.number(edge as usize / 4, index as u32 & 63, index >> 6);
             polygon.ids[i] = self.first[owner as usize] + local;
@@ -149,8 +149,8 @@ impl Tables<'_> {
     fn corner_values(&self, cell: &Cell<'_>) -> [f64; 8] {
         let [x, y, z] = cell.at;
         std::array::from_fn(|k| {
-            let (tile, index) = locate(cell.brick, x + (k & 1), y + (k >> 1 & 1), z + (k >> 2));
-            value(self.signs, self.distance, tile, index)
+            let (neighbour, index) = locate(cell.brick, x + (k & 1), y + (k >> 1 & 1), z + (k >> 2));
+            value(self.signs, self.distance, neighbour, index)
         })
     }
 }

@@ -16,7 +16,7 @@ use super::merging::Merging;
 use super::star::{Fault, star_fault, triangle_fault};
 use super::{Collapsed, Contour, Ground, Merge};
 use crate::lattice::Lattice;
-use crate::mesh::{Plane, TriMesh, intersecting_triangles};
+use crate::mesh::{Plane, Submesh, TriMesh, intersecting_triangles};
 use crate::progress::{Progress, Stopped};
 
 /// Searches for intersections after which everything is split again.
@@ -69,7 +69,7 @@ pub fn collapse_same_voxel(
 }
 
 /// Triangles of the current state, and the raw triangle of each.
-struct Part {
+struct Present {
     mesh: TriMesh,
     origin: Vec<u32>,
 }
@@ -140,7 +140,7 @@ impl Merging<'_> {
     /// The current mesh; with `changed` groups, only the triangles that could meet a changed one. As
     /// no vertex is farther than 2 h from its inside voxel and the voxels of a triangle are corners of
     /// one cell, such triangles have voxels at most 6 apart: they lie in neighbouring blocks of 8³.
-    fn mesh(&self, changed: Option<&[u32]>) -> Part {
+    fn mesh(&self, changed: Option<&[u32]>) -> Present {
         let block = |v: u32| self.voxel(v) >> 3;
         let near = changed.map(|groups| {
             let blocks: FxHashSet<IVec3> = self.surroundings(groups).0.into_iter().map(block).collect();
@@ -151,7 +151,6 @@ impl Merging<'_> {
         let all = self.raw.mesh.triangles.par_iter().enumerate();
         let (origin, kept): (Vec<u32>, Vec<[u32; 3]>) =
             all.filter(|(_, t)| wanted(**t)).filter_map(|(id, &t)| Some((id as u32, self.triangle(t)?))).unzip();
-        let (positions, triangles, _) = self.compact(kept);
-        Part { mesh: TriMesh { positions, triangles }, origin }
+        Present { mesh: Submesh::of(&self.at, kept).mesh, origin }
     }
 }

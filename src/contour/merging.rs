@@ -10,14 +10,14 @@ use super::place::place;
 use super::{Collapsed, Contour, ContourVertex, Ground, Merge};
 use crate::lattice::Lattice;
 use crate::mesh::around::Around;
-use crate::mesh::{Plane, TriMesh};
+use crate::mesh::{Plane, Submesh};
 
 /// Not a member of any group.
 const ALONE: u32 = u32::MAX;
 
 /// The vertices of one voxel.
 #[derive(Debug)]
-pub(super) struct Group {
+pub(super) struct Merger {
     /// Range in the list of members.
     members: Range<usize>,
     /// Where they are together, model units.
@@ -31,7 +31,7 @@ pub(super) struct Group {
 /// The raw contour and what of it is merged.
 pub(super) struct Merging<'a> {
     pub(super) raw: &'a Contour,
-    pub(super) groups: Vec<Group>,
+    pub(super) groups: Vec<Merger>,
     members: Vec<u32>,
     group_of: Vec<u32>,
     /// The vertex that stands for a raw vertex.
@@ -80,7 +80,7 @@ impl<'a> Merging<'a> {
                         return None;
                     }
                 }
-                Some(Group { members, at, ground, merged: characteristic == 1 })
+                Some(Merger { members, at, ground, merged: characteristic == 1 })
             })
             .collect();
         for (id, group) in merging.groups.iter().enumerate().filter(|(_, g)| g.merged) {
@@ -198,19 +198,9 @@ impl<'a> Merging<'a> {
         self.groups_of(self.surroundings(groups).1.into_iter())
     }
 
-    /// Numbers the vertices that `triangles` use: positions, triangles, and the old number of each.
-    pub(super) fn compact(&self, mut triangles: Vec<[u32; 3]>) -> (Vec<DVec3>, Vec<[u32; 3]>, Vec<u32>) {
-        let mut number = vec![ALONE; self.stands.len()];
-        triangles.iter().flatten().for_each(|&v| number[v as usize] = 0);
-        let used: Vec<u32> = (0..number.len() as u32).filter(|&v| number[v as usize] == 0).collect();
-        used.iter().zip(0..).for_each(|(&v, n)| number[v as usize] = n);
-        triangles.par_iter_mut().for_each(|t| *t = t.map(|v| number[v as usize]));
-        (used.iter().map(|&v| self.at[v as usize]).collect(), triangles, used)
-    }
-
     pub(super) fn finish(self) -> Collapsed {
         let kept = self.raw.mesh.triangles.par_iter().filter_map(|&t| self.triangle(t)).collect();
-        let (positions, triangles, used) = self.compact(kept);
+        let Submesh { mesh, vertices: used } = Submesh::of(&self.at, kept);
         let mut starts = vec![0];
         let mut members = Vec::with_capacity(self.stands.len());
         for v in &used {
@@ -223,11 +213,7 @@ impl<'a> Merging<'a> {
         };
         let merged = self.groups.iter().filter(|g| g.merged).count();
         Collapsed {
-            contour: Contour {
-                vertices: used.iter().map(source).collect(),
-                mesh: TriMesh { positions, triangles },
-                folded_loops: self.raw.folded_loops,
-            },
+            contour: Contour { vertices: used.iter().map(source).collect(), mesh, folded_loops: self.raw.folded_loops },
             starts,
             members,
             raw: self.raw.vertices.clone(),

@@ -46,9 +46,9 @@ pub struct Crossing {
 /// The lattice edge from `voxel` to the next voxel along `axis`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Edge {
-    /// The lower end.
+    /// The voxel at its lower end.
     pub voxel: IVec3,
-    /// 0, 1 or 2: x, y or z.
+    /// The axis along which it runs: 0, 1 or 2 for x, y or z.
     pub axis: u8,
 }
 
@@ -69,7 +69,7 @@ impl Default for ContourOptions {
 /// What a vertex of a contour lies on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Ground {
-    /// Nothing that is known.
+    /// Nothing that is known: no triangle was crossed there.
     #[default]
     Unknown,
     /// The triangle of the input with this number.
@@ -82,7 +82,7 @@ pub enum Ground {
 /// Where a vertex comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ContourVertex {
-    /// What it lies on.
+    /// What the vertex lies on.
     pub ground: Ground,
     /// The voxel inside the solid to whose cube it belongs.
     pub voxel: IVec3,
@@ -95,19 +95,19 @@ pub struct ContourVertex {
 pub struct Contour {
     /// The surface, model units. Every coordinate is exactly an `f32`.
     pub mesh: TriMesh,
-    /// One for each vertex of the mesh.
+    /// Where each vertex of the mesh comes from.
     pub vertices: Vec<ContourVertex>,
     /// Loops that had no triangulation free of folds. Not seen yet; if it is not 0, the mesh may
     /// intersect itself there.
     pub folded_loops: usize,
 }
 
-/// Which voxels' vertices are merged.
+/// Which vertices are merged: those of which voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Merge {
-    /// All, as in the paper.
+    /// Those of every voxel, as in the paper.
     All,
-    /// Those whose source triangles are nearly one plane, so that nothing is lost.
+    /// Those of voxels whose vertices lie nearly in one plane, so that merging them loses nothing.
     Flat {
         /// How far the merged vertex may lie beside the planes, h.
         within: f64,
@@ -121,7 +121,7 @@ pub struct Collapsed {
     pub contour: Contour,
     /// The raw vertices that became vertex v: `members[starts[v]..starts[v + 1]]` in `raw`.
     pub starts: Vec<u32>,
-    /// See `starts`.
+    /// The numbers of raw vertices, vertex after vertex of the merged contour; `starts` says where each one's begin.
     pub members: Vec<u32>,
     /// The vertices of the raw contour.
     pub raw: Vec<ContourVertex>,

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::fill::touches_border;
 use super::passages::Passages;
-use super::{Facet, Field, FillError, FillOptions, Sample, fill};
+use super::{Field, FillError, FillOptions, Sample, SourceTriangle, fill};
 use crate::contour::{Contour, ContourOptions, Crossing, Edge, Ground, contour};
 use crate::lattice::Lattice;
 use crate::mesh::Plane;
@@ -28,7 +28,7 @@ pub struct Level {
     /// For each vertex of the contour the tangent plane, model units, normal outwards.
     pub planes: Vec<Plane>,
     /// For each vertex of the contour the triangle that the level lies on there.
-    pub facets: Vec<Option<Facet>>,
+    pub sources: Vec<Option<SourceTriangle>>,
     /// Whether the level goes on beyond the lattice, where it was cut off.
     pub cut_off: bool,
 }
@@ -67,10 +67,10 @@ pub fn level(
     let positions = &contour.mesh.positions;
     let planes: Vec<Plane> = positions.par_chunks(PACKET).flat_map_iter(|points| tangents(field, points)).collect();
     progress.check()?;
-    let facets = positions.par_iter().map(|&p| field.facet(p, ON_SOURCE * lattice.h)).collect();
+    let sources = positions.par_iter().map(|&p| field.source_triangle(p, ON_SOURCE * lattice.h)).collect();
     progress.check()?;
     contour.vertices.iter_mut().zip(0..).for_each(|(vertex, n)| vertex.ground = Ground::Plane(n));
-    Ok(Level { contour, planes, facets, cut_off })
+    Ok(Level { contour, planes, sources, cut_off })
 }
 
 /// The planes through the points of the level nearest to `points`, by one step along the gradient; without a normal where

@@ -13,7 +13,7 @@ use crate::lattice::{
 use crate::mesh::Bounds;
 use crate::progress::{Progress, Stopped};
 
-/// Bricks that a ball may meet, along an axis, for its range to be looked up in each; larger ones are bounded by the steepness.
+/// Bricks that a ball may meet, along an axis, for its range to be looked up in each; larger ones are bounded by the Lipschitz bound.
 const MOST_BRICKS: i32 = 6;
 
 /// Voxels along a side of a brick with those next to it.
@@ -27,15 +27,15 @@ pub struct Sampled {
     /// For each stored brick the range of its values and those next to it.
     ranges: Vec<Range>,
     all: Range,
-    steepness: f64,
+    lipschitz: f64,
     extent: Extent,
 }
 
 impl Sampled {
-    /// The field with these values at the voxels of their lattice.
+    /// The field that has these values at the voxels of their lattice.
     pub fn new(field: DistanceField) -> Self {
         let field = field.into_model_units();
-        let mut sampled = Self { ranges: Vec::new(), all: Range::ALL, steepness: 0.0, extent: Extent::Empty, field };
+        let mut sampled = Self { ranges: Vec::new(), all: Range::ALL, lipschitz: 0.0, extent: Extent::Empty, field };
         let parts: Vec<(Range, f32, Option<Bounds>)> =
             sampled.field.grid.bricks.active().par_iter().map(|&brick| sampled.describe(brick)).collect();
         let far = |values: &[f32]| Range::of(values.iter().filter(|v| v.is_finite()).map(|&v| f64::from(v)));
@@ -44,7 +44,7 @@ impl Sampled {
             .fold(far(&[sampled.field.grid.inside, sampled.field.grid.outside]), |all, part| all.or(part.0));
         // Along each axis the interpolated field is as steep as the steepest pair of voxels; beyond the lattice it rises by 1 besides.
         let steepest = parts.iter().fold(0.0, |most, part| f32::max(most, part.1));
-        sampled.steepness = (f64::from(steepest) / sampled.field.lattice.h * 3f64.sqrt()).hypot(1.0);
+        sampled.lipschitz = (f64::from(steepest) / sampled.field.lattice.h * 3f64.sqrt()).hypot(1.0);
         let boxes = parts.iter().filter_map(|part| part.2).reduce(|a, b| a.union(&b));
         sampled.extent = Extent::of(boxes);
         sampled.ranges = parts.into_iter().map(|part| part.0).collect();
@@ -75,7 +75,7 @@ impl Sampled {
         bricks.saturating_mul(Self::BYTES_OF_BRICK)
     }
 
-    /// Bytes of memory that it takes.
+    /// Bytes of memory that the field takes.
     pub fn memory(&self) -> u64 {
         self.field.grid.bricks.len() as u64 * Self::BYTES_OF_BRICK
     }
@@ -154,14 +154,14 @@ impl Field for Sampled {
     }
 
     fn range(&self, ball: &Ball) -> Range {
-        let by_steepness = Range::around(self.at(ball.centre).value, self.steepness * ball.radius);
+        let by_bound = Range::around(self.at(ball.centre).value, self.lipschitz * ball.radius);
         let reach = DVec3::splat(ball.radius);
         let [low, high] = [ball.centre - reach, ball.centre + reach].map(|p| self.field.lattice.to_lattice(p));
         let last = (self.field.lattice.dims - 1).as_dvec3();
         let whole = low.cmpge(DVec3::ZERO).all() && high.cmple(last).all();
         let (low, high) = (brick_of(low.floor().as_ivec3()), brick_of(high.floor().as_ivec3()));
         if !whole || (high - low).max_element() >= MOST_BRICKS {
-            return by_steepness.and(if whole { self.all } else { Range { max: f64::INFINITY, ..self.all } });
+            return by_bound.and(if whole { self.all } else { Range { max: f64::INFINITY, ..self.all } });
         }
         let mut range = Range::of([]);
         for z in low.z..=high.z {
@@ -171,11 +171,11 @@ impl Field for Sampled {
                 }
             }
         }
-        by_steepness.and(range)
+        by_bound.and(range)
     }
 
-    fn steepness(&self) -> f64 {
-        self.steepness
+    fn lipschitz(&self) -> f64 {
+        self.lipschitz
     }
 
     fn extent(&self) -> Extent {

@@ -42,7 +42,7 @@ impl Side {
         Self(facet.0 << 1 | u32::from(reversed))
     }
 
-    /// The facet.
+    /// The facet whose side this is.
     pub fn facet(self) -> FacetId {
         FacetId(self.0 >> 1)
     }
@@ -71,33 +71,33 @@ impl Default for Sides {
 }
 
 impl Sides {
-    /// The given sides, each once, at most four.
+    /// A list of the given sides, each once; those after the fourth are left out.
     pub fn of(sides: impl IntoIterator<Item = Side>) -> Self {
         let mut all = Self::default();
         sides.into_iter().for_each(|side| all.add(side));
         all
     }
 
-    /// Adds a side unless it is there or four are.
+    /// Adds a side, unless it is in the list or the list is full.
     pub fn add(&mut self, side: Side) {
         if let Some(free) = self.0.iter_mut().find(|s| **s == FREE || **s == side) {
             *free = side;
         }
     }
 
-    /// The sides.
+    /// The sides in the list.
     pub fn iter(&self) -> impl Iterator<Item = Side> + Clone + '_ {
         self.0.iter().copied().take_while(|s| *s != FREE)
     }
 
-    /// Whether there is none.
+    /// Whether the list has no side.
     pub fn is_empty(&self) -> bool {
         self.0[0] == FREE
     }
 }
 
-/// Planes with extents. The first ones are the triangles of the source mesh, the others planes without
-/// an end.
+/// What a surface is fitted to: the triangles of the source mesh as planes that end where the triangles do, and after them
+/// planes without an end.
 pub struct Facets<'a> {
     mesh: &'a TriMesh,
     planes: Vec<Plane>,
@@ -107,41 +107,43 @@ pub struct Facets<'a> {
     /// A number for each triangle, or none: simplification keeps different ones apart.
     classes: Vec<u32>,
     /// How far a point is from the surface that is wanted, model units, where that is known.
-    wanted: Option<Wanted<'a>>,
+    target: Option<TargetDistance<'a>>,
 }
 
-/// How far a point (model units) is from the surface that is wanted, model units.
-pub type Wanted<'a> = &'a (dyn Fn(DVec3) -> f64 + Sync);
+/// The target distance: how far a point (model units) is from the surface that is wanted, in model units.
+pub type TargetDistance<'a> = &'a (dyn Fn(DVec3) -> f64 + Sync);
 
 /// A crease farther than this, h, from the surface that is wanted is none: the planes belong to something round.
 const ASTRAY: f64 = 0.05;
 
 impl<'a> Facets<'a> {
-    /// The triangles of `mesh`, and after them `lids`: planes, model units, of surface that has no
-    /// source.
-    pub fn new(mesh: &'a TriMesh, lids: impl IntoIterator<Item = Plane>) -> Self {
+    /// The facets of a source: the triangles of `mesh`, and after them `planes` (model units) for surface that no triangle is
+    /// the source of.
+    pub fn new(mesh: &'a TriMesh, planes: impl IntoIterator<Item = Plane>) -> Self {
         let count = mesh.triangles.len();
-        let mut planes: Vec<Plane> = (0..count).into_par_iter().map(|t| Plane::through(mesh.corners(t))).collect();
-        planes.extend(lids);
+        let mut all: Vec<Plane> = (0..count).into_par_iter().map(|t| Plane::through(mesh.corners(t))).collect();
+        all.extend(planes);
         let neighbours = Neighbours::new(&mesh.triangles, mesh.positions.len());
-        Self { mesh, planes, neighbours, around: Around::new(mesh), classes: Vec::new(), wanted: None }
+        Self { mesh, planes: all, neighbours, around: Around::new(mesh), classes: Vec::new(), target: None }
     }
 
-    /// With a number for each triangle; simplification keeps apart what has different ones.
+    /// The same facets with a number, the class, for each triangle: simplification moves no surface over the border between
+    /// two classes, so that colours and operands stay apart.
     pub fn with_classes(mut self, classes: Vec<u32>) -> Self {
         self.classes = classes;
         self
     }
 
-    /// With a judge of creases: planes that touch something round meet off it.
-    pub fn with_wanted(mut self, wanted: Wanted<'a>) -> Self {
-        self.wanted = Some(wanted);
+    /// The same facets with a judge of creases. Planes that touch something round meet beside it, and a crease there would be
+    /// wrong; the target distance tells.
+    pub fn with_target(mut self, target: TargetDistance<'a>) -> Self {
+        self.target = Some(target);
         self
     }
 
     /// Whether a point is on the surface that is wanted, as far as is known.
-    pub(super) fn is_wanted(&self, p: DVec3, h: f64) -> bool {
-        self.wanted.is_none_or(|off| off(p) < ASTRAY * h)
+    pub(super) fn is_on_target(&self, p: DVec3, h: f64) -> bool {
+        self.target.is_none_or(|off| off(p) < ASTRAY * h)
     }
 
     /// Whether there are any classes.

@@ -12,12 +12,13 @@ use crate::progress::{Progress, Stopped};
 pub struct SimpleSource {
     /// The simplified solid.
     pub mesh: TriMesh,
-    /// For each of its triangles the one of the source that it lies on.
+    /// For each triangle of the simplified solid the triangle of the source that it lies on.
     pub of: Vec<Option<u32>>,
 }
 
-/// A valid solid with its flat parts simplified within [`FitOptions::kept_tolerance`]. `classes` has a number for each triangle, or nothing: what has different ones is kept apart. `h` is the voxel
-/// spacing that the tolerance refers to, model units. `None` where the mesh is no valid solid, as it is or with coordinates in `f32`.
+/// Simplifies the flat parts of a valid solid within [`FitOptions::kept_tolerance`]. `classes` is empty or has a number for
+/// each triangle; triangles of different numbers are kept apart. `h` is the voxel spacing that the tolerance refers to, model
+/// units. There is no result where the mesh is no valid solid, as it is or with coordinates in `f32`.
 ///
 /// # Errors
 /// Only a stop.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::crease::Place;
+use super::crease::Spot;
 use super::facets::{FacetId, Facets, SMOOTH, Side, Sides};
 use crate::mesh::TriMesh;
 
@@ -15,7 +15,7 @@ const OFF: f64 = 0.05;
 pub struct Surface {
     /// The surface, model units; every coordinate is an `f32`.
     pub mesh: TriMesh,
-    /// One for each vertex.
+    /// The facets that each vertex lies on.
     pub sides: Vec<Sides>,
     /// For each vertex the vertex of the source that it is.
     pub(super) vertices_of: Vec<OfSource>,
@@ -62,9 +62,9 @@ impl Surface {
     }
 
     /// Adds a vertex, and says which vertex of the source it is.
-    pub(super) fn add(&mut self, place: Place, of: OfSource) {
-        self.mesh.positions.push(place.at);
-        self.sides.push(place.sides);
+    pub(super) fn add(&mut self, spot: Spot, of: OfSource) {
+        self.mesh.positions.push(spot.at);
+        self.sides.push(spot.sides);
         self.vertices_of.push(of);
     }
 
@@ -77,13 +77,13 @@ impl Surface {
         self.mesh.positions[vertex as usize]
     }
 
-    pub(super) fn put(&mut self, vertex: u32, place: Place) {
-        self.mesh.positions[vertex as usize] = place.at;
-        self.sides[vertex as usize] = place.sides;
+    pub(super) fn put(&mut self, vertex: u32, spot: Spot) {
+        self.mesh.positions[vertex as usize] = spot.at;
+        self.sides[vertex as usize] = spot.sides;
     }
 
-    pub(super) fn place(&self, vertex: u32) -> Place {
-        Place { at: self.at(vertex), sides: self.sides[vertex as usize] }
+    pub(super) fn spot(&self, vertex: u32) -> Spot {
+        Spot { at: self.at(vertex), sides: self.sides[vertex as usize] }
     }
 
     /// The edges, each once, smaller vertex first; the surface must be closed.
@@ -119,7 +119,7 @@ impl Surface {
 
     /// The facet that a triangle lies on; `None` where nothing is known.
     pub fn facet(&self, facets: &Facets<'_>, t: u32) -> Option<FacetId> {
-        let corners = self.places(t);
+        let corners = self.spots(t);
         let centre = corners.iter().map(|c| c.at).sum::<DVec3>() / 3.0;
         let normal = shape(corners.map(|c| c.at)).0.normalize_or_zero();
         if let Some(own) = self.source_triangle(t) {
@@ -145,17 +145,17 @@ impl Surface {
     }
 
     /// The corners of a triangle.
-    pub(super) fn places(&self, t: u32) -> [Place; 3] {
-        self.mesh.triangles[t as usize].map(|v| self.place(v))
+    pub(super) fn spots(&self, t: u32) -> [Spot; 3] {
+        self.mesh.triangles[t as usize].map(|v| self.spot(v))
     }
 }
 
 /// How well a triangle agrees with its facets: the cosine between its normal and that of the facet,
 /// of those its corners lie on, whose smooth piece all corners share and that agrees best; `None` where there
 /// is no such piece.
-pub(super) fn agreement(facets: &Facets<'_>, corners: &[Place; 3]) -> Option<f64> {
+pub(super) fn agreement(facets: &Facets<'_>, corners: &[Spot; 3]) -> Option<f64> {
     let normal = shape(corners.map(|c| c.at)).0.normalize_or_zero();
-    let has = |corner: &Place, p: Side| {
+    let has = |corner: &Spot, p: Side| {
         corner.sides.iter().any(|q| p == q || facets.plane(p).normal.dot(facets.plane(q).normal) > SMOOTH)
     };
     let all = corners.iter().flat_map(|c| c.sides.iter());
@@ -165,7 +165,7 @@ pub(super) fn agreement(facets: &Facets<'_>, corners: &[Place; 3]) -> Option<f64
 }
 
 /// Whether a triangle does not face away from its facets.
-pub(super) fn faces_out(facets: &Facets<'_>, corners: &[Place; 3]) -> bool {
+pub(super) fn faces_out(facets: &Facets<'_>, corners: &[Spot; 3]) -> bool {
     agreement(facets, corners).is_none_or(|a| a > 0.0)
 }
 

@@ -20,6 +20,9 @@ mod plane;
 pub(crate) mod predicates;
 mod pseudonormals;
 mod self_intersection;
+#[cfg(test)]
+pub(crate) mod shapes;
+mod submesh;
 mod tri_mesh;
 mod triangle_pair;
 mod validity;
@@ -36,6 +39,7 @@ pub use plane::Plane;
 pub use pseudonormals::Pseudonormals;
 pub(crate) use self_intersection::intersecting_groups;
 pub use self_intersection::{intersecting_triangles, self_intersections};
+pub use submesh::Submesh;
 pub use tri_mesh::{Bounds, TriMesh};
 pub use triangle_pair::triangles_intersect;
 pub(crate) use validity::flat_triangles;

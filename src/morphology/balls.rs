@@ -23,15 +23,16 @@ const ONE_SPACE: f64 = 1.0;
 /// region.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Centres {
-    /// The surface of it that the lattice shows, and a very small triangle at each of the points between the voxels; it
-    /// bounds nothing.
+    /// The surface of that region as far as the lattice shows it, and a very small triangle at each of the points between the
+    /// voxels. Together they bound nothing.
     pub mesh: TriMesh,
     /// For each triangle the number of the space that it bounds.
     pub spaces: Vec<u32>,
 }
 
 impl Centres {
-    /// Of the surface, closed, that the lattice shows, and its level around what lies between the voxels; `h` in model units.
+    /// Puts the closed surface that the lattice shows and the level around what lies between the voxels together; `h` in model
+    /// units.
     pub fn new(mut surface: TriMesh, between: &[Remain], h: f64) -> Self {
         for p in between.iter().map(|remain| remain.point) {
             let first = surface.positions.len() as u32;
@@ -64,7 +65,7 @@ fn join_near(sets: &mut Union, points: &[DVec3], side: f64) {
     }
 }
 
-/// In how many places the points lie; those in cubes of `side` that touch lie in one.
+/// The number of places in which the points lie. Points in cubes of `side` that touch lie in one place.
 pub fn places(remains: &[Remain], side: f64) -> usize {
     let points: Vec<DVec3> = remains.iter().map(|remain| remain.point).collect();
     let mut sets = Union::new(points.len());

@@ -37,13 +37,13 @@ impl<'a> Body<'a> {
         Self { mesh, distance, around: Around::new(mesh), mitre: None, sheet: true }
     }
 
-    /// The plain distance.
+    /// The distance itself, edges rounded.
     pub fn distance(&self) -> &ExactDistance {
         &self.distance
     }
 
-    /// The value that is levelled at `p`, model units, and its gradient; infinite for an empty solid. It is found soonest
-    /// if the surface is nearer than `likely`, model units.
+    /// The value at `p` whose levels are offsets, model units, and its gradient; infinite for an empty solid. It is found
+    /// soonest if the surface is nearer than `likely`, model units.
     pub fn at(&self, p: DVec3, likely: f64) -> (f64, DVec3) {
         match self.distance.within(p, likely).or_else(|| self.distance.at(p)) {
             Some(nearest) => self.mitred(p, &nearest),

@@ -82,11 +82,11 @@ pub fn closed(
     Ok(Closed { offset: Offset { contour, planes, remains }, changed })
 }
 
-/// A closing or opening.
+/// The surface of a closing or opening.
 pub struct Closed {
-    /// Its surface; the remains are points of the solid's own surface at walls (gaps, for an opening) that no voxel shows.
+    /// The surface itself; the remains are points of the solid's own surface at walls (gaps, for an opening) that no voxel shows.
     pub offset: Offset,
-    /// Whether it differs from the solid at any voxel.
+    /// Whether the result differs from the solid at any voxel.
     pub changed: bool,
 }
 
@@ -118,16 +118,16 @@ fn restore(field: &mut Grid<f32>, own: &Grid<f32>, within: f32, holds: &(impl Fn
     restored.reduce(|| false, |a, b| a | b)
 }
 
-/// Which points of a triangle a ball reaches.
+/// How many points of a triangle a ball reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reached {
-    /// Points that were tried.
+    /// Number of points that were tried.
     pub tried: u32,
-    /// Points that a ball touches from outside.
+    /// Number of these that a ball touches from outside.
     pub touched: u32,
 }
 
-/// For each triangle of `body` which of its points (corners, and others about `h` apart) a ball of `radius` (model units)
+/// For each triangle of `body` how many of its points (corners, and others about `h` apart) a ball of `radius` (model units)
 /// touches from outside without meeting the solid elsewhere; from inside for a negative radius (Bærentzen §5.2: the
 /// offset point has to be at that distance). Points that are not beside the `region` count as touched.
 pub fn reached(

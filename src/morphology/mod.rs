@@ -45,7 +45,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// Offsets that it takes.
+    /// The number of offsets that the operation takes.
     pub fn offsets(self) -> u32 {
         match self {
             Self::Dilate | Self::Erode => 1,

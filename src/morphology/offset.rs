@@ -19,7 +19,7 @@ pub(super) const MARGIN: f64 = 2.5;
 /// The surface is nearer than the distance in single precision times this.
 const LIKELY: f64 = 1.001;
 
-/// A level of a field.
+/// A level of the distance to a body.
 pub struct Offset {
     /// The surface; its vertices lie on the solid's triangles or on planes.
     pub contour: Contour,

@@ -6,7 +6,7 @@ use crate::mesh::neighbours::{Across, Neighbours};
 /// A triangle that no patch has reached yet.
 const UNSEEN: u32 = u32::MAX;
 
-/// The patches of a soup.
+/// The patches of a soup: triangles that are connected through edges which exactly two of them share.
 #[derive(Debug, Clone, Default)]
 pub struct Patches {
     /// The patch of each triangle; patches are numbered by their first triangle.

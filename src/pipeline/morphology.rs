@@ -8,7 +8,7 @@ use super::frame::Frame;
 use super::plan::{Offsets, area, check_offsets};
 use super::{Error, Options, Outcome, TriangleSource, VoxelSize, boolean, kind, prepare, refine, stages};
 use crate::digits;
-use crate::fit::{Facets, FitOptions, FitReport, Sides, Surface, Wanted, fit};
+use crate::fit::{Facets, FitOptions, FitReport, Sides, Surface, TargetDistance, fit};
 use crate::lattice::Lattice;
 use crate::ldi::{Evidence, Expression};
 use crate::mesh::{TriMesh, ValidateOptions, validate};
@@ -269,7 +269,7 @@ impl Run<'_> {
     fn fitted(
         &self,
         (offset, lattice): (Offset, &Lattice),
-        (source, off): (&TriMesh, Wanted<'_>),
+        (source, off): (&TriMesh, TargetDistance<'_>),
         evidence: Evidence,
         options: Option<FitOptions>,
         level: f64,
@@ -281,7 +281,7 @@ impl Run<'_> {
             let surface = Surface::new(TriMesh::default(), Vec::new());
             return Ok(Made { surface, own: Vec::new(), fit: None, h: self.h, too_thin: offset.remains });
         }
-        let facets = Facets::new(source, offset.planes).with_wanted(off);
+        let facets = Facets::new(source, offset.planes).with_target(off);
         let mut surface = refine::merged(offset.contour, &facets, lattice, &self.options.solid, self.progress)?;
         let mut fitted = None;
         if let Some(options) = options {

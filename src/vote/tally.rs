@@ -17,16 +17,16 @@ const ENOUGH: u8 = 10;
 /// What the directions say of one voxel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Votes {
-    /// Directions that say inside.
+    /// Number of directions that say inside.
     pub inside: u8,
-    /// Directions that say anything.
+    /// Number of directions that say anything at all.
     pub valid: u8,
-    /// The decision.
+    /// Whether the voxel is inside, as the rule decided by these votes.
     pub is_inside: bool,
 }
 
 impl Votes {
-    /// Few valid votes, or a minority of more than a quarter of them.
+    /// Whether the votes are too few, or the minority of more than a quarter too large, for the decision to be trusted.
     #[inline]
     pub fn doubtful(self) -> bool {
         self.valid < FEW || 4 * self.inside.min(self.valid - self.inside) > self.valid
@@ -38,7 +38,7 @@ impl Votes {
         self.valid >= ENOUGH && (self.inside == 0 || self.inside == self.valid)
     }
 
-    /// All 13 directions say the same.
+    /// Whether all 13 directions say the same.
     #[inline]
     pub fn unanimous(self) -> bool {
         self.valid == 13 && (self.inside == 0 || self.inside == 13)

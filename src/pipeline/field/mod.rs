@@ -92,14 +92,14 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
     }
     let mut contour = level.contour;
     let sources = &built.sources;
-    for (vertex, facet) in contour.vertices.iter_mut().zip(&level.facets) {
-        if let Some(triangle) = facet.and_then(|facet| sources.number(facet)) {
+    for (vertex, source) in contour.vertices.iter_mut().zip(&level.sources) {
+        if let Some(triangle) = source.and_then(|source| sources.number(source)) {
             vertex.ground = Ground::Triangle(triangle);
         }
     }
-    let wanted = |p: DVec3| off(field, p, lattice.h);
+    let target = |p: DVec3| off(field, p, lattice.h);
     let source = &frame.local(std::slice::from_ref(&sources.mesh))[0];
-    let facets = Facets::new(source, level.planes).with_wanted(&wanted);
+    let facets = Facets::new(source, level.planes).with_target(&target);
     stages.begin("collapse")?;
     let mut surface = refine::merged(contour, &facets, &lattice, options, progress)?;
     let mut fitted = None;
@@ -135,7 +135,7 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
 /// How far a point is from the level, model units. Gradients cost more than values, and mostly the value tells enough.
 fn off(field: &dyn Field, p: DVec3, h: f64) -> f64 {
     let value = field.value(p).abs();
-    let least = value / field.steepness();
+    let least = value / field.lipschitz();
     if value < NEAR * h || least > FAR * h {
         return least.max(value.min(NEAR * h));
     }

@@ -31,7 +31,7 @@ use crate::progress::{Progress, Stopped};
 use crate::sdf::Levels;
 use crate::vote::{Votes, Winding};
 pub(in crate::sdf) use descend::Filled;
-pub(in crate::sdf) use feature::{Edge, Face, Features, Measured, Vertex};
+pub(in crate::sdf) use feature::{EdgeFeature, FaceFeature, Features, Measured, VertexFeature};
 pub(in crate::sdf) use tiles::{MARGIN, Region, Scope};
 
 /// Voxels along an axis, at most.
@@ -42,7 +42,7 @@ const MOST_VOXELS: i32 = 1 << 15;
 pub enum Band {
     /// All voxels within this distance, in h; less than 1 counts as 1.
     Within(f64),
-    /// The whole lattice.
+    /// The whole lattice is filled.
     Full,
 }
 

@@ -1,4 +1,4 @@
-//! What every field promises: packets, ranges, steepness, gradients, filling.
+//! What every field promises: packets, ranges, Lipschitz bound, gradients, filling.
 
 use glam::{DVec3, IVec3};
 use meshwright::field::{Ball, Extent, FillOptions, Sample, fill, scattered};
@@ -106,7 +106,7 @@ fn values_stay_in_their_ranges() {
 #[test]
 fn no_field_is_steeper_than_it_says() {
     for (name, field) in all() {
-        let most = field.steepness();
+        let most = field.lipschitz();
         let points = places(150, 17);
         for pair in points.windows(2) {
             let [a, b] = [field.value(pair[0]), field.value(pair[1])];
