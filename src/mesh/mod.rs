@@ -22,6 +22,7 @@ mod pseudonormals;
 mod self_intersection;
 #[cfg(test)]
 pub(crate) mod shapes;
+mod solid;
 mod submesh;
 mod tri_mesh;
 mod triangle_pair;
@@ -39,6 +40,7 @@ pub use plane::Plane;
 pub use pseudonormals::Pseudonormals;
 pub(crate) use self_intersection::intersecting_groups;
 pub use self_intersection::{intersecting_triangles, self_intersections};
+pub use solid::{NotSolid, Solid, SolidError};
 pub use submesh::Submesh;
 pub use tri_mesh::{Bounds, TriMesh};
 pub use triangle_pair::triangles_intersect;

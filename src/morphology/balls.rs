@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::offset::MARGIN;
-use super::{Body, MorphologyError, Remain, around};
+use super::{Body, OffsetError, Remain, around};
 use crate::lattice::{BRICK_VOXELS, DistanceField, Slot};
 use crate::mesh::edges::Union;
 use crate::mesh::{Plane, TriMesh};
@@ -109,7 +109,7 @@ impl<'a> Balls<'a> {
 
     /// That distance at the voxels of `own`, the distance to the solid itself; both count in voxels. At centres it is that one, and
     /// nowhere is more than it outside of a closing, or less inside of an opening.
-    pub(super) fn field(&self, own: &DistanceField, progress: &Progress) -> Result<DistanceField, MorphologyError> {
+    pub(super) fn field(&self, own: &DistanceField, progress: &Progress) -> Result<DistanceField, OffsetError> {
         let reach = self.radius.abs() / own.lattice.h;
         let options = ExactOptions { band: Band::Within(reach + MARGIN), max_memory: None };
         let far = exact(self.centres.mesh, &own.lattice, Sign::Pseudonormal, &options, progress)?.grid;

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::offset::MARGIN;
 use super::remains::Search;
-use super::{Balls, Body, MorphologyError, Offset, Region};
+use super::{Balls, Body, Offset, OffsetError, Region};
 use crate::contour::{ContourOptions, Crossing, Edge, Ground, contour};
 use crate::lattice::{BRICK, DistanceField, Grid, Lattice, voxel_in_brick};
 use crate::mesh::Plane;
@@ -48,7 +48,7 @@ pub fn closed(
     lattice: &Lattice,
     region: Option<&Region<'_>>,
     progress: &Progress,
-) -> Result<Closed, MorphologyError> {
+) -> Result<Closed, OffsetError> {
     let h = lattice.h;
     let own = own_distance(original, balls.radius, lattice, progress)?;
     let mut field = balls.field(&own, progress)?;
@@ -96,7 +96,7 @@ pub(super) fn own_distance(
     radius: f64,
     lattice: &Lattice,
     progress: &Progress,
-) -> Result<DistanceField, MorphologyError> {
+) -> Result<DistanceField, OffsetError> {
     let band = Band::Within(radius.abs() / lattice.h + MARGIN);
     Ok(exact(original.mesh, lattice, Sign::Pseudonormal, &ExactOptions { band, max_memory: None }, progress)?)
 }

@@ -6,7 +6,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::remains::{Remain, Search};
-use super::{Body, MorphologyError};
+use super::{Body, OffsetError};
 use crate::contour::{Contour, ContourOptions, Crossing, Edge, Ground, contour};
 use crate::lattice::{BRICK, Bricks, DistanceField, Lattice, voxel_in_brick};
 use crate::mesh::Plane;
@@ -35,7 +35,7 @@ pub struct Offset {
 ///
 /// # Errors
 /// Those of [`exact`], and a stop.
-pub fn offset(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) -> Result<Offset, MorphologyError> {
+pub fn offset(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) -> Result<Offset, OffsetError> {
     let field = field(body, level, lattice, progress)?;
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
     let crossing = |edge: Edge| {
@@ -60,12 +60,7 @@ pub(super) fn tangent(body: &Body<'_>, level: f64, p: DVec3, h: f64) -> Plane {
 }
 
 /// The distance less the level over the lattice, counted in voxels.
-fn field(
-    body: &Body<'_>,
-    level: f64,
-    lattice: &Lattice,
-    progress: &Progress,
-) -> Result<DistanceField, MorphologyError> {
+fn field(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) -> Result<DistanceField, OffsetError> {
     let level_h = level / lattice.h;
     let reach = level_h.abs() * body.mitre.unwrap_or(1.0);
     let options = ExactOptions { band: Band::Within(reach + MARGIN), max_memory: None };

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick, voxel_in_brick};
 use crate::mesh::edges::Union;
 use crate::morphology::closed::{own_distance, unchanged};
-use crate::morphology::{Balls, Body, MorphologyError, around};
+use crate::morphology::{Balls, Body, OffsetError, around};
 use crate::progress::Progress;
 
 /// The number of no voxel.
@@ -41,7 +41,7 @@ impl Fill {
         balls: &Balls<'_>,
         lattice: &Lattice,
         progress: &Progress,
-    ) -> Result<Self, MorphologyError> {
+    ) -> Result<Self, OffsetError> {
         let own = own_distance(original, balls.radius, lattice, progress)?;
         let closing = balls.field(&own, progress)?.grid;
         let own = own.grid;
