@@ -2,7 +2,7 @@
 //! voxels.
 
 use crate::common::repaired::{morphed, without_canals};
-use crate::common::shapes::{cuboid, torus};
+use crate::common::shapes::{cuboid, torus, turned};
 use glam::{DMat3, DVec3};
 use meshwright::mesh::{TriMesh, ValidateOptions, Validity, validate};
 use meshwright::morphology::Operation::{self, Close, Dilate, Erode, Open};
@@ -106,8 +106,14 @@ fn a_ball_that_just_fits_passes() {
 
 #[test]
 fn eight_plates_with_gaps_wider_than_the_ball_come_back_as_they_are() {
-    let mesh = crate::common::read(&crate::common::data_folder().join("clean/88566.stl"));
-    let Done { outcome, report, .. } = done(&mesh, Close, 1.5, 128);
+    let mut mesh = TriMesh::default();
+    for n in 0..4 {
+        let mut two = plates(1.0);
+        two.positions.iter_mut().for_each(|p| p.z += 4.0 * f64::from(n));
+        mesh.append(&two);
+    }
+    let mesh = turned(mesh, 0.4);
+    let Done { outcome, report, .. } = done(&mesh, Close, 0.45, 128);
     assert_eq!(report.made, 0);
     assert_eq!(outcome.solid.triangles.len(), mesh.triangles.len());
 }
