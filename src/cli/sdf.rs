@@ -252,7 +252,7 @@ fn samples<'a>(
     plane: &'a (dyn Fn(usize, &mut Vec<f32>) + Sync),
     blocks: &'a SampleBlocks<'a>,
 ) -> DistanceSamples<'a> {
-    let lattice = &outcome.lattice;
+    let lattice = &outcome.field.lattice;
     DistanceSamples {
         origin: lattice.origin,
         spacing: lattice.h,
@@ -274,10 +274,10 @@ pub(super) fn write(
     report: &mut RunReport,
 ) -> Result<OutputEntry, Failure> {
     let plane = |z: usize, values: &mut Vec<f32>| outcome.plane(z, values);
-    let (bricks, h) = (&outcome.field.bricks, outcome.lattice.h);
+    let (field, bricks) = (&outcome.field, &outcome.field.grid.bricks);
     let blocks = SampleBlocks {
         stored: bricks.active(),
-        values: &|n| outcome.field.values[n].map(|value| (f64::from(value) * h) as f32),
+        values: &|n| field.grid.values[n].map(|value| field.length(value) as f32),
         inside: &|brick| bricks.slot(brick) == Slot::Inside,
     };
     let samples = samples(outcome, unit, &plane, &blocks);
