@@ -27,6 +27,8 @@ mod foreign;
 mod format;
 mod gltf;
 mod grids;
+#[cfg(feature = "cli")]
+pub(crate) mod leftovers;
 mod obj;
 mod off;
 mod ply;
