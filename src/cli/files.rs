@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use super::exit::{Exit, Failure};
 use super::input::{is_stream, label, plain_reason};
 use super::output;
-use crate::io::draft::{clear_leftovers, folder_of};
+use crate::io::draft::folder_of;
+use crate::io::leftovers::clear_leftovers;
 
 /// A file that a run makes.
 pub struct Made {
