@@ -37,25 +37,7 @@ pub fn as_operands(inputs: &mut Vec<Input>, expression: &Expression) -> Expressi
         };
         inputs.push(Input { label, loaded, entry });
     }
-    without(expression, &negative_of)
-}
-
-/// The expression with each operand less its negative parts.
-fn without(expression: &Expression, negative_of: &[Option<usize>]) -> Expression {
-    let one = |part: &Expression| Box::new(without(part, negative_of));
-    let all = |parts: &[Expression]| parts.iter().map(|part| without(part, negative_of)).collect();
-    match expression {
-        Expression::Operand(n) => match negative_of.get(*n).copied().flatten() {
-            Some(negative) => {
-                Expression::Difference(Box::new(Expression::Operand(*n)), Box::new(Expression::Operand(negative)))
-            }
-            None => Expression::Operand(*n),
-        },
-        Expression::Union(parts) => Expression::Union(all(parts)),
-        Expression::Intersection(parts) => Expression::Intersection(all(parts)),
-        Expression::Difference(a, b) => Expression::Difference(one(a), one(b)),
-        Expression::SymmetricDifference(a, b) => Expression::SymmetricDifference(one(a), one(b)),
-    }
+    expression.less(&negative_of)
 }
 
 /// For what has nothing to subtract from: forgets the negative parts, and says which.
@@ -75,21 +57,4 @@ fn named(parts: &[PartEntry]) -> String {
         parts.iter().filter(|part| !part.name.is_empty()).map(|part| format!("`{}`", part.name)).collect();
     let names = if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
     format!("{}{names}", words::plural(parts.len(), "negative part"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_use_of_an_operand_is_less_its_negative_parts() {
-        let expression = Expression::difference(3);
-        let whole = without(&expression, &[Some(3), None, Some(4)]);
-        for bits in 0..32u32 {
-            let inside: Vec<bool> = (0..5).map(|n| bits >> n & 1 == 1).collect();
-            let expected = (inside[0] && !inside[3]) && !(inside[1] || (inside[2] && !inside[4]));
-            assert_eq!(whole.evaluate(&inside), expected, "{inside:?}");
-        }
-        assert_eq!(without(&expression, &[None; 3]), expression);
-    }
 }

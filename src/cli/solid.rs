@@ -18,7 +18,7 @@ use super::{backend, doubts, keep, limits, machine, map, negative, summary, word
 use crate::fit::{FitOptions, rounded};
 use crate::io::{Colours, Format, Loaded, Paint, Unit};
 use crate::ldi::Expression;
-use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
+use crate::mesh::{Bounds, TriMesh, Validity, validate};
 use crate::pipeline::{self, Advice, Operand, Options, Precision, VoxelSize};
 
 /// Meshes and what is to be made of them.
@@ -290,8 +290,7 @@ fn judge(
     session: &Session,
 ) -> Result<Validity, Failure> {
     check_same(&read.mesh, made, factor)?;
-    let options = ValidateOptions { self_intersections: true, weld: input::is_soup_format(read.format) };
-    let validity = validate(&read.mesh, &options, &session.progress)?;
+    let validity = validate(&read.mesh, &read.validate_options(), &session.progress)?;
     if validity.is_valid() {
         return Ok(validity);
     }

@@ -42,7 +42,7 @@ pub(crate) use self_intersection::intersecting_groups;
 pub use self_intersection::{intersecting_triangles, self_intersections};
 pub use solid::{NotSolid, Solid, SolidError};
 pub use submesh::Submesh;
-pub use tri_mesh::{Bounds, TriMesh};
+pub use tri_mesh::{Bounds, IndexError, TriMesh};
 pub use triangle_pair::triangles_intersect;
 pub(crate) use validity::flat_triangles;
 pub use validity::{ValidateOptions, Validity, validate};
