@@ -18,6 +18,9 @@ use crate::progress::Progress;
 
 /// Draws a mesh, as large as the image allows. Front sides (counter-clockwise) have their colours, or are grey; back sides,
 /// which an intact solid never shows, are rust red.
+///
+/// # Errors
+/// [`RenderError::Empty`] for a mesh without triangles, [`RenderError::Size`] for sizes out of range, and [`RenderError::Stopped`].
 pub fn render<'a>(
     mesh: impl Into<Painted<'a>>,
     options: &RenderOptions,
@@ -30,6 +33,9 @@ pub fn render<'a>(
 
 /// Draws two meshes with the same camera, so that the images can be laid over each other. A mesh without
 /// triangles gives an empty image.
+///
+/// # Errors
+/// As [`render`], but [`RenderError::Empty`] only when neither mesh has triangles.
 pub fn render_pair<'a>(
     before: impl Into<Painted<'a>>,
     after: impl Into<Painted<'a>>,

@@ -18,9 +18,9 @@ type Corner = ([u64; 3], [u32; 2]);
 type Side = (u32, usize);
 
 impl TextureMap {
-    /// A number for each triangle of `mesh`, the same for triangles that have one material and the same coordinates at both ends of a common
-    /// edge, from where the texture goes on evenly: laid into one plane, they are one picture. Where there are no coordinates the material alone
-    /// counts.
+    /// A number for each triangle of `mesh`, which is the same for all triangles of a *chart*: a piece of the surface that, laid into one plane, shows
+    /// one picture. Two neighbours are of one chart if they have the same material and, at both ends of their common edge, the same
+    /// coordinates, and if the texture goes on evenly over that edge. Where there are no coordinates, the material alone counts.
     pub fn charts(&self, mesh: &TriMesh) -> Vec<u32> {
         let count = mesh.triangles.len();
         let mut root: Vec<u32> = (0..count as u32).collect();
