@@ -13,7 +13,6 @@ use super::session::Session;
 use super::words;
 use crate::io::{self, Loaded, Part, TextureMap, Unit};
 use crate::mesh::{Validity, validate};
-use crate::pipeline;
 
 /// One mesh as read.
 pub struct Input {
@@ -23,14 +22,6 @@ pub struct Input {
     pub loaded: Loaded,
     /// Its entry in the report; the validity is filled in later.
     pub entry: InputEntry,
-}
-
-impl Input {
-    /// A number for each triangle, different where colours, materials and textures are to be kept apart.
-    pub fn classes(&self) -> Vec<u32> {
-        let Loaded { mesh, colours, texture, .. } = &self.loaded;
-        pipeline::classes_of(mesh, colours.as_ref(), texture.as_ref())
-    }
 }
 
 /// Bytes of memory that the textures of all inputs take.

@@ -1,13 +1,10 @@
 //! Negative parts of a file, which slicers take away from the rest: an operand of their own where solids are combined.
 
-use super::exit::Failure;
 use super::input::Input;
 use super::report::PartEntry;
-use super::session::Session;
 use super::words;
 use crate::io::Loaded;
 use crate::ldi::Expression;
-use crate::pipeline::{self, Options};
 
 /// Makes an operand of the negative parts of each input, after all others, and takes it away from its own in the
 /// expression.
@@ -41,39 +38,6 @@ pub fn as_operands(inputs: &mut Vec<Input>, expression: &Expression) -> Expressi
         inputs.push(Input { label, loaded, entry });
     }
     expression.less(&negative_of)
-}
-
-/// For a change of a single solid: what is left of it without its negative parts, and the options for that.
-pub fn carved(
-    inputs: &[Input],
-    expression: &Expression,
-    options: &Options,
-    session: &Session,
-) -> Result<Result<(Input, Options), pipeline::Error>, Failure> {
-    let Some(own) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
-    let meshes: Vec<_> = inputs.iter().map(|input| input.loaded.mesh.clone()).collect();
-    let outcome = match pipeline::boolean(&meshes, expression, options, &session.progress) {
-        Ok(outcome) => outcome,
-        Err(error) => return Ok(Err(error)),
-    };
-    let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
-    let colours = pipeline::carry_colours(&outcome, &operands);
-    let textures: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.texture.as_ref())).collect();
-    let texture = pipeline::carry_texture(&outcome, &textures);
-    let classes = pipeline::classes_of(&outcome.mesh, colours.as_ref(), texture.as_ref());
-    let options = Options { classes: vec![classes], ..options.clone() };
-    let loaded = Loaded {
-        mesh: outcome.mesh,
-        colours,
-        texture,
-        legend: Vec::new(),
-        format: own.loaded.format,
-        unit: own.loaded.unit,
-        parts: own.loaded.parts.clone(),
-        negative: None,
-        warnings: Vec::new(),
-    };
-    Ok(Ok((Input { label: own.label.clone(), loaded, entry: own.entry.clone() }, options)))
 }
 
 /// For what has nothing to subtract from: forgets the negative parts, and says which.

@@ -45,7 +45,7 @@ fn the_error_says_what_and_where() {
 fn triangles_at_coordinates_that_are_no_numbers_are_left_out() {
     let sound = torus(32, 16);
     let options = Options::new(VoxelSize::Length(0.1));
-    let expected = repair(&sound, &options, &Progress::none()).expect("a solid").mesh;
+    let expected = repair(&sound, &options, &Progress::none()).expect("a solid").solid;
     for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut mesh = sound.clone();
         let first = mesh.positions.len() as u32;
@@ -56,6 +56,6 @@ fn triangles_at_coordinates_that_are_no_numbers_are_left_out() {
         let validity = validate(&mesh, &look, &Progress::none()).expect("not stopped");
         assert!(validity.degenerate_triangles >= 2 && !validity.is_valid(), "{odd}: {:?}", validity.problems());
         let outcome = repair(&mesh, &options, &Progress::none()).unwrap_or_else(|error| panic!("{odd}: {error}"));
-        assert_eq!(outcome.mesh, expected, "{odd}");
+        assert_eq!(outcome.solid, expected, "{odd}");
     }
 }
