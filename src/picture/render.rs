@@ -10,7 +10,7 @@ use super::light::shade;
 use super::lines::LinesByBand;
 use super::occlusion::occlusion;
 use super::options::{BAND, Background, Painted, RenderError, RenderOptions, check_size};
-use super::rgb::{Rgb, Sample};
+use super::rgb::{Rgb, PixelSample};
 use super::scene::Scene;
 use super::sight::{Sight, sight};
 use crate::mesh::TriMesh;
@@ -82,23 +82,23 @@ fn draw(
 }
 
 /// The colour of each sample of some pixel rows; alpha 0 where nothing is seen.
-fn shade_band(scene: &Scene, seen: &Sight, darkness: &[f32], rows: Range<usize>) -> Vec<Sample> {
+fn shade_band(scene: &Scene, seen: &Sight, darkness: &[f32], rows: Range<usize>) -> Vec<PixelSample> {
     let (columns, per_pixel) = (seen.columns(), seen.samples);
     let sample_rows = rows.start * per_pixel..rows.end * per_pixel;
     let cells = sample_rows.flat_map(|row| (0..columns).map(move |column| (row, column)));
     cells
         .map(|(row, column)| match seen.hit(row, column) {
-            None => Sample { colour: Rgb::BLACK, alpha: 0.0 },
+            None => PixelSample { colour: Rgb::BLACK, alpha: 0.0 },
             Some(hit) => {
                 let pixel = (row / per_pixel) * (columns / per_pixel) + column / per_pixel;
-                Sample { colour: shade(scene, hit, seen.position(row, column), darkness[pixel]), alpha: 1.0 }
+                PixelSample { colour: shade(scene, hit, seen.position(row, column), darkness[pixel]), alpha: 1.0 }
             }
         })
         .collect()
 }
 
 /// The bytes of some pixel rows from their samples.
-fn average(colours: &[Sample], samples: usize, width: usize, background: Background, out: &mut [u8]) {
+fn average(colours: &[PixelSample], samples: usize, width: usize, background: Background, out: &mut [u8]) {
     let columns = width * samples;
     let share = 1.0 / (samples * samples) as f32;
     for (pixel, bytes) in out.chunks_exact_mut(4).enumerate() {

@@ -8,7 +8,7 @@ use super::colour_map::colour;
 use super::digits;
 use super::image::Image;
 use super::options::{BAND, RenderError, check_size};
-use super::rgb::{Rgb, Sample};
+use super::rgb::{Rgb, PixelSample};
 use crate::mesh::Bounds;
 use crate::progress::Progress;
 
@@ -186,7 +186,7 @@ impl SliceSamples {
         let slope = self.slope(column as isize, row as isize, value);
         // Where the field is flat there are no lines, even at a value that has one.
         let pixels = |level: f32| if slope > 1e-5 * step { (value - level).abs() / slope } else { f32::INFINITY };
-        let mut sample = Sample { colour: colour(value / full), alpha: 1.0 };
+        let mut sample = PixelSample { colour: colour(value / full), alpha: 1.0 };
         let level = (value / step).round();
         if level != 0.0 {
             sample.cover(LINE, 0.5 * cover(pixels(level * step), 0.45 * self.layout.pen));
