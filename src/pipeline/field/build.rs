@@ -16,7 +16,7 @@ use crate::field::{
     Body, Extent, Field, FillOptions, MeshField, Placement, PointField, Sampled, Shared, Solid, blur_band, blurred,
     fill, material, placed, scattered,
 };
-use crate::lattice::Lattice;
+use crate::lattice::DistanceField;
 use crate::mesh::{Bounds, ValidateOptions, validate};
 use crate::pipeline::{
     DistanceMethod, DistanceOptions, DistanceSign, Operand, Options, TriangleSource, VoxelSize, distance, repair,
@@ -97,6 +97,11 @@ impl<'a> FieldBuilder<'a> {
     /// # Errors
     /// See [`FieldError`].
     pub fn build(&mut self, tree: &Node<Value>) -> Result<Built, FieldError> {
+        for operand in self.operands {
+            if let FieldOperand::Mesh(operand) = operand {
+                operand.mesh.check()?;
+            }
+        }
         self.parts = self.operands.iter().filter_map(FieldOperand::bounds).reduce(|a, b| a.union(&b));
         let field = self.node(tree)?;
         let operands = self.made.keys().map(|&(operand, made)| OperandReport { operand, made }).collect();
@@ -217,11 +222,7 @@ impl<'a> FieldBuilder<'a> {
             max_memory: self.options.max_memory,
         };
         let found = distance(mesh, &options, self.progress)?;
-        let mut grid = found.field;
-        let h = found.lattice.h as f32;
-        grid.values.iter_mut().flatten().for_each(|value| *value *= h);
-        (grid.inside, grid.outside) = (grid.inside * h, grid.outside * h);
-        Ok(self.remember(operand, name, Arc::new(Sampled::new(grid, found.lattice))))
+        Ok(self.remember(operand, name, Arc::new(Sampled::new(found.field))))
     }
 
     fn exact(&mut self, operand: usize) -> Result<Shared, FieldError> {
@@ -256,25 +257,23 @@ impl<'a> FieldBuilder<'a> {
     }
 
     /// The field over its own lattice, filled up to `band` from zero, or all of it.
-    fn sampled(&self, field: &Shared, h: f64, band: f64) -> Result<(crate::lattice::Grid<f32>, Lattice), FieldError> {
+    fn sampled(&self, field: &Shared, h: f64, band: f64) -> Result<DistanceField, FieldError> {
         let extent = super::shape_extent(field)?;
         let extent = Bounds { min: extent.min - band, max: extent.max + band };
         let lattice = sizing::lattice(&extent, VoxelSize::Length(h))?;
         let options = FillOptions { band: Some(band), max_memory: self.options.max_memory };
-        let grid = fill(&**field, &lattice, &options, self.progress)?;
-        Ok((grid, lattice))
+        Ok(fill(&**field, &lattice, &options, self.progress)?)
     }
 
     fn blur(&self, field: &Shared, sigma: f64) -> Result<Shared, FieldError> {
         let extent = super::shape_extent(field)?;
         let h = sizing::lattice(&extent, self.options.voxel)?.h;
-        let (grid, lattice) = self.sampled(field, h, blur_band(sigma) + 2.0 * h)?;
-        Ok(Arc::new(Sampled::new(blurred(&grid, &lattice, sigma, self.progress)?, lattice)))
+        let sharp = self.sampled(field, h, blur_band(sigma) + 2.0 * h)?;
+        Ok(Arc::new(Sampled::new(blurred(&sharp, sigma, self.progress)?)))
     }
 
     fn coarse(&self, field: &Shared, voxel: f64) -> Result<Shared, FieldError> {
-        let (grid, lattice) = self.sampled(field, voxel, 4.0 * voxel)?;
-        Ok(Arc::new(Sampled::new(grid, lattice)))
+        Ok(Arc::new(Sampled::new(self.sampled(field, voxel, 4.0 * voxel)?)))
     }
 
     fn body(&mut self, call: &Call<Value>) -> Shared {
