@@ -113,6 +113,10 @@ pub enum Verb {
     /// List the graphics adapters, and what --backend would take
     #[command(after_help = EXIT_CODES)]
     Devices(DevicesArgs),
+    /// Print the JSON schema of the reports that --json and --report write
+    #[cfg(feature = "schema")]
+    #[command(after_help = EXIT_CODES)]
+    Schema,
 }
 
 const CSG_HELP: &str = "\

@@ -187,7 +187,7 @@ pub fn list(
     common: &CommonArgs,
     unit: UnitName<'_>,
 ) -> Result<(), Failure> {
-    let canals = report.pipeline.as_ref().and_then(|pipeline| pipeline.canals.as_ref());
+    let canals = report.pipeline().and_then(|pipeline| pipeline.canals.as_ref());
     match canals.filter(|_| !common.json && change.is_some_and(|change| !change.makes_a_mesh())) {
         Some(canals) => super::output::write_stream(canal_table(canals, unit).as_bytes()),
         None => Ok(()),

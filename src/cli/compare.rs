@@ -10,11 +10,13 @@ use super::input::{self, Input, is_stream};
 use super::length::{Length, Scale};
 use super::output;
 use super::report::{OutputEntry, RunReport};
+use super::result::RunResult;
 use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
 use crate::compare::{CompareOptions, Comparison, Relative, compare, deviation_map};
 use crate::io::{self, Format, LegendEntry, Unit, VertexMap};
+use crate::progress::Stage;
 
 /// Measures two files against each other and prints a table.
 pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
@@ -23,7 +25,7 @@ pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Res
         check_map(map)?;
     }
     let mut inputs =
-        report.timed("read", |report| input::read_all(&paths, &args.reading, session, &mut report.warnings))?;
+        report.timed(Stage::Read, |report| input::read_all(&paths, &args.reading, session, &mut report.warnings))?;
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     let [a, b] = inputs.as_slice() else { return Err(Failure::internal("two meshes were wanted")) };
@@ -33,15 +35,17 @@ pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Res
         "samples": args.samples, "tolerance": limits.tolerance, "fail_on_max": limits.largest,
     });
     let options = CompareOptions { samples: args.samples as usize, edge_tolerance: limits.tolerance };
-    let found = report.timed("compare", |_| compare(&a.loaded.mesh, &b.loaded.mesh, &options, &session.progress))?;
-    report.comparison = Some(found.clone());
+    let found =
+        report.timed(Stage::Compare, |_| compare(&a.loaded.mesh, &b.loaded.mesh, &options, &session.progress))?;
+    report.result = Some(RunResult::Comparison { comparison: found.clone(), output: None });
     for (input, measures) in [(a, &found.a), (b, &found.b)] {
         if measures.area <= 0.0 {
             return Err(Failure::input(format!("{}: no triangle has an area", input.label)));
         }
     }
     if let Some(path) = &args.map {
-        report.output = Some(report.timed("map", |_| write_map(path, a, b, unit, session))?);
+        let written = report.timed(Stage::Map, |_| write_map(path, a, b, unit, session))?;
+        report.written(written);
     }
     session.clear_bar();
     let name = unit.map(|unit| unit.to_string());

@@ -10,15 +10,17 @@ use super::input;
 use super::output::{Target, write_verified};
 use super::paint::{self, Arranged};
 use super::report::{OutputEntry, RunReport};
+use super::result::RunResult;
 use super::session::Session;
 use super::{grids, keep, transform, words};
 use crate::io::{Loaded, Paint};
 use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
+use crate::progress::Stage;
 
 /// Reads one file and writes it again, scaled, turned and moved if that was asked for.
 pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let mut given = report
-        .timed("read", |report| Given::read(&[&args.input], &args.reading, None, session, &mut report.warnings))?;
+        .timed(Stage::Read, |report| Given::read(&[&args.input], &args.reading, None, session, &mut report.warnings))?;
     let unit = given.common_unit(&args.reading, &mut report.warnings);
     if !given.grids.is_empty() {
         return grids::convert(args, &given, unit, session, report);
@@ -50,7 +52,7 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     report.warnings.extend(target.unit_note());
     let placed = if done.is_some() { state(mesh, session)? } else { before.clone() };
     let arranged = Arranged::new(mesh, &paint, target.options.format);
-    let (entry, after) = report.timed("write and verify", |_| {
+    let (entry, after) = report.timed(Stage::WriteAndVerify, |_| {
         write_verified(&target, &arranged.mesh, arranged.paint(), session, |read| {
             check_close(read, &arranged.mesh, target.options.factor())?;
             paint::check_colours(read, &arranged.mesh, &arranged.paint())?;
@@ -68,7 +70,7 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     })?;
     let triangles = after.triangles;
     report.inputs[0].validity = Some(before);
-    report.output = Some(OutputEntry { validity: Some(after.clone()), ..entry });
+    report.result = Some(RunResult::Conversion { output: OutputEntry { validity: Some(after.clone()), ..entry } });
     let lost = losses(&placed, &after);
     report.warnings.extend(lost.iter().cloned());
     session.clear_bar();

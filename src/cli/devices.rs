@@ -1,11 +1,13 @@
 //! `devices`: the graphics adapters of this machine.
 
+use crate::progress::Stage;
 use clap::Args;
 use serde::Serialize;
 
 use super::args::CommonArgs;
 use super::exit::{Exit, Failure};
 use super::report::RunReport;
+use super::result::RunResult;
 
 /// `devices`.
 #[derive(Debug, Args)]
@@ -17,6 +19,7 @@ pub struct DevicesArgs {
 
 /// The adapters, and which ones would be taken.
 #[derive(Debug, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DeviceReport {
     /// Whether the program was built with the feature `gpu`.
     pub built: bool,
@@ -37,11 +40,11 @@ pub struct DeviceReport {
 /// Lists the adapters.
 pub fn run(args: &DevicesArgs, report: &mut RunReport) -> Result<Exit, Failure> {
     report.options = serde_json::json!({});
-    let found = report.timed("list", |_| find());
+    let found = report.timed(Stage::List, |_| find());
     if !args.common.json {
         super::output::write_stream(text(&found).as_bytes())?;
     }
-    report.devices = Some(found);
+    report.result = Some(RunResult::Devices { devices: found });
     Ok(Exit::Done)
 }
 

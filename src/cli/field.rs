@@ -15,6 +15,7 @@ use super::input::{self, is_stream};
 use super::length::{BandChoice, Length, Scale, Simplify};
 use super::output::Target;
 use super::report::RunReport;
+use super::result::{FrameEntry, RunResult};
 use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
@@ -26,6 +27,7 @@ use crate::io::{Colours, GridFormat, GridValues, Paint, Unit, WriteOptions};
 use crate::mesh::Bounds;
 use crate::picture::ramp_colour;
 use crate::pipeline::{self, Built, FieldBand, FieldBuilder, FieldReport, Operand, Options, Precision, VoxelSize};
+use crate::progress::Stage;
 
 /// Values in a lattice reach so far from the surface, voxels, unless it is said otherwise.
 const USUAL_BAND: f64 = 4.0;
@@ -37,15 +39,16 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     let paths: Vec<&Path> = files.iter().map(|(_, path)| *path).collect();
     let targets = targets(args)?;
     session.expect_frames(targets.len());
-    let mut given = report
-        .timed("read", |report| Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings))?;
+    let mut given = report.timed(Stage::Read, |report| {
+        Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings)
+    })?;
     let unit = given.common_unit(&args.reading, &mut report.warnings);
     given.describe(report);
     for (entry, (name, _)) in report.inputs.iter_mut().zip(&files) {
         entry.name = Some(name.to_string());
     }
-    report.timed("examine", |report| {
-        session.progress.stage("examine")?;
+    report.timed(Stage::Examine, |report| {
+        session.progress.stage(Stage::Examine)?;
         for (which, entry) in given.order.iter().zip(&mut report.inputs) {
             if let Which::Mesh(n) = *which {
                 entry.validity = Some(input::examine(&given.meshes[n].loaded, session)?);
@@ -74,8 +77,7 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     }
     let broken = limits::beyond_memory(report, args.max_memory);
     report.warnings.extend(broken.iter().cloned());
-    report.seconds = session.start.elapsed().as_secs_f64();
-    report.peak_memory_bytes = super::machine::peak_memory();
+    report.measure(session.start);
     session.clear_bar();
     say(session, report, targets.len(), unit);
     Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
@@ -118,7 +120,7 @@ impl<'a> Texts<'a> {
         let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
         let one = |text: &'a str| match language::parse_some(text, &names) {
             Ok(node) => Ok((text, node)),
-            Err(error) => Err(explain(text, &names, &error)),
+            Err(error) => Err(explain(text, &error)),
         };
         let (field, paint) = (one(&args.expression)?, args.paint.as_deref().map(one).transpose()?);
         let texts = Self { names, field, paint };
@@ -127,10 +129,10 @@ impl<'a> Texts<'a> {
         let unused = texts.names.iter().enumerate().filter(|(n, _)| !used.contains(n));
         let unused: Vec<String> = unused.map(|(_, name)| name.to_string()).collect();
         if !unused.is_empty() {
-            return Err(explain(&args.expression, &texts.names, &LanguageError::UnusedNames { names: unused }));
+            return Err(explain(&args.expression, &LanguageError::UnusedNames { names: unused }));
         }
         match (texts.frame(), args.frames) {
-            (Some((text, at)), None) => Err(explain(text, &texts.names, &LanguageError::NoFrame { at })),
+            (Some((text, at)), None) => Err(explain(text, &LanguageError::NoFrame { at })),
             (None, Some(_)) => {
                 let failure = Failure::usage("--frames makes a sequence, and the expression has no `t` that changes");
                 Err(failure.hint("for example 'morph(a, b, t)'"))
@@ -306,7 +308,7 @@ impl Run<'_> {
     }
 
     fn build(&mut self, (text, node): &(&str, Node), share: f64) -> Result<Built, Failure> {
-        let named = |error: LanguageError| explain(text, &self.texts.names, &error);
+        let named = |error: LanguageError| explain(text, &error);
         let node: Node<Value> = node
             .at_frame(share)
             .and_then(|node| node.resolve(|value, suffix| length(value, suffix, self.scale)))
@@ -331,16 +333,18 @@ impl Run<'_> {
         let precision = Precision::of_format(target.options.format);
         let options = Options { precision, ..self.simplified(built)? };
         let made = pipeline::field_surface(built, &options, progress);
-        let (mut outcome, mut account) = made.map_err(|e| self.failure(&e))?;
+        let (mut outcome, account) = made.map_err(|e| self.failure(&e))?;
+        let mut smaller = None;
         if let Some(volume) = self.args.drop_smaller {
             let scale = Scale { voxel: Some(outcome.lattice.h), ..*self.scale };
             let least = volume.resolve(&scale)?;
             (outcome, _) = pipeline::drop_smaller(outcome, &[], least).map_err(|e| self.failure(&e))?;
-            account.smaller = outcome.report.smaller;
+            smaller = Some(outcome.report.smaller);
         }
         report.options["voxel"] = json!(outcome.lattice.h);
-        report.stages.extend(outcome.report.stages.iter().cloned());
-        report.fields.push(account);
+        report.stages.append(&mut outcome.report.stages);
+        let fit = outcome.report.fit.take();
+        note(report, FrameEntry { field: account, fit, smaller, distance: None, output: None });
         let paint = match &self.texts.paint {
             Some(text) => {
                 let built = self.build(text, share)?;
@@ -357,7 +361,9 @@ impl Run<'_> {
         let operands: Vec<_> = self.given.textured().collect();
         let texture = self.texts.paint.is_none().then(|| pipeline::carry_texture(&outcome, &operands)).flatten();
         let paint = Paint { colours: paint.as_ref(), texture: texture.as_ref(), beside: None };
-        solid::write(&outcome.mesh, paint, &target, self.session, report)
+        let written = solid::write(&outcome.mesh, paint, &target, self.session, report)?;
+        report.written(written);
+        Ok(())
     }
 
     /// The options with `--simplify` in voxels of the lattice that the surface will be made on.
@@ -379,13 +385,20 @@ impl Run<'_> {
             None => FieldBand::Voxels(USUAL_BAND),
         };
         let made = pipeline::field_grid(built, band, self.options, &self.session.progress);
-        let outcome = made.map_err(|e| self.failure(&e))?;
-        report.stages.extend(outcome.report.stages.iter().cloned());
-        report.distance = Some(outcome.report.clone());
-        let entry = sdf::write(path, &outcome, self.scale.unit, format, self.session, report)?;
-        report.output = Some(entry);
-        report.fields.push(FieldReport { operands: built.operands.clone(), ..FieldReport::default() });
+        let mut outcome = made.map_err(|e| self.failure(&e))?;
+        report.stages.append(&mut outcome.report.stages);
+        let output = Some(sdf::write(path, &outcome, self.scale.unit, format, self.session, report)?);
+        let field = FieldReport { operands: built.operands.clone(), ..FieldReport::default() };
+        note(report, FrameEntry { field, fit: None, smaller: None, distance: Some(outcome.report), output });
         Ok(())
+    }
+}
+
+/// One more result.
+fn note(report: &mut RunReport, frame: FrameEntry) {
+    match &mut report.result {
+        Some(RunResult::Field { frames }) => frames.push(frame),
+        other => *other = Some(RunResult::Field { frames: vec![frame] }),
     }
 }
 
@@ -431,8 +444,12 @@ fn say(session: &Session, report: &RunReport, frames: usize, unit: Option<Unit>)
     let name = unit.map(|unit| unit.to_string());
     let unit: UnitName<'_> = name.as_deref();
     let mut rows: Vec<Row> = summary::input_rows(report);
-    if let Some(field) = report.fields.last() {
-        for operand in &field.operands {
+    let last = match &report.result {
+        Some(RunResult::Field { frames }) => frames.last(),
+        _ => None,
+    };
+    if let Some(frame) = last {
+        for operand in &frame.field.operands {
             let label = report.inputs.get(operand.operand).and_then(|input| input.name.clone()).unwrap_or_default();
             let how = match operand.made {
                 "exact" => "its exact distance",
@@ -443,12 +460,13 @@ fn say(session: &Session, report: &RunReport, frames: usize, unit: Option<Unit>)
             };
             rows.push(("done", format!("{label}: {how}")));
         }
-        rows.extend(dropped::smaller(&field.smaller, unit).map(|text| ("dropped", text)));
+        let smaller = frame.smaller.as_ref().and_then(|smaller| dropped::smaller(smaller, unit));
+        rows.extend(smaller.map(|text| ("dropped", text)));
     }
-    if let Some(distance) = &report.distance {
+    if let Some(distance) = last.and_then(|frame| frame.distance.as_ref()) {
         rows.push(("voxel", summary::voxel(distance.voxel, distance.dims, unit)));
         let [low, high] = distance.range.map(|value| words::number(value.into()));
-        if let Some(output) = &report.output {
+        if let Some(output) = report.output() {
             rows.push(("result", format!("{}: {low} to {high}; {}", output.path, words::bytes(output.bytes))));
         }
     }

@@ -11,6 +11,7 @@ use super::session::Session;
 use super::slice::{self, GridInput};
 use crate::io::{Colours, Format, GridFormat, TextureMap, Unit};
 use crate::mesh::TriMesh;
+use crate::progress::Stage;
 
 /// Files as read.
 pub struct Given {
@@ -41,7 +42,7 @@ impl Given {
         notes: &mut Vec<String>,
     ) -> Result<Self, Failure> {
         input::check_streams(paths)?;
-        session.progress.stage("read")?;
+        session.progress.stage(Stage::Read)?;
         let mut inputs = Self { meshes: Vec::new(), grids: Vec::new(), order: Vec::new() };
         for path in paths {
             let bytes = input::bytes_of(path, session)?;

@@ -12,15 +12,18 @@ use super::given::Given;
 use super::input;
 use super::output;
 use super::report::RunReport;
+use super::result::RunResult;
 use super::session::Session;
 use super::slice::GridInput;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
 use super::{machine, output::is_direct};
 use crate::io::{DistanceSamples, Format, GridFile, GridFormat, GridMeasures, GridValues, Unit};
+use crate::progress::Stage;
 
 /// A lattice in the report, in the unit of the run.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GridEntry {
     /// Voxels along x, y, z.
     pub dims: [usize; 3],
@@ -70,11 +73,11 @@ pub fn inspect(
     }
     report.options = json!({ "unit": unit.map(|unit| unit.to_string()) });
     given.describe(report);
-    let found = report.timed("examine", |_| {
-        session.progress.stage("examine")?;
+    let found = report.timed(Stage::Examine, |_| {
+        session.progress.stage(Stage::Examine)?;
         Ok::<_, Failure>(GridEntry::of(&grid.file, &grid.file.measures()))
     })?;
-    report.grid = Some(found.clone());
+    report.result = Some(RunResult::Lattice { grid: found.clone() });
     session.clear_bar();
     if !args.common.json {
         let name = unit.map(|unit| unit.to_string());
@@ -175,15 +178,15 @@ pub fn convert(
         plane: &plane,
         blocks: None,
     };
-    let entry = report.timed("write and verify", |_| {
-        session.progress.stage("write")?;
+    let entry = report.timed(Stage::WriteAndVerify, |_| {
+        session.progress.stage(Stage::Write)?;
         output::write_grid(&args.output, &samples, format, session)
     })?;
     session.clear_bar();
     let name = unit.filter(|_| format.says_where()).map_or(String::new(), |unit| format!(", in {unit}"));
     let [x, y, z] = file.dims;
     session.say(&format!("{}: {x} x {y} x {z} voxels, as {format}{name}, {}", entry.path, words::bytes(entry.bytes)));
-    report.output = Some(entry);
+    report.result = Some(RunResult::Conversion { output: entry });
     Ok(Exit::Done)
 }
 

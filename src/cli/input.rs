@@ -14,6 +14,7 @@ use super::words;
 use crate::io::{self, Format, Loaded, Part, TextureMap, Unit};
 use crate::mesh::{ValidateOptions, Validity, validate};
 use crate::pipeline;
+use crate::progress::Stage;
 
 /// One mesh as read.
 pub struct Input {
@@ -69,7 +70,7 @@ pub fn read_operands(
     notes: &mut Vec<String>,
 ) -> Result<Vec<Input>, Failure> {
     check_streams(paths)?;
-    session.progress.stage("read")?;
+    session.progress.stage(Stage::Read)?;
     let mut read = |path: &&Path| mesh_of(path, &bytes_of(path, session)?, args, session, notes);
     paths.iter().map(&mut read).collect()
 }

@@ -9,11 +9,13 @@ use super::given::Given;
 use super::input::{self, Input};
 use super::length::Scale;
 use super::report::RunReport;
+use super::result::RunResult;
 use super::session::Session;
 use super::{grids, summary, words};
 use crate::io::Unit;
 use crate::mesh::{Bounds, MassProperties, Overhang, ValidateOptions, Validity, validate};
 use crate::pipeline::{self, LengthsReport, Options, ThicknessReport, VoxelSize};
+use crate::progress::Stage;
 
 /// Degrees between level and upright.
 pub fn overhang_angle(text: &str) -> Result<f64, String> {
@@ -26,33 +28,35 @@ pub fn overhang_angle(text: &str) -> Result<f64, String> {
 /// Looks at one file and prints a table.
 pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let mut given = report
-        .timed("read", |report| Given::read(&[&args.input], &args.reading, None, session, &mut report.warnings))?;
+        .timed(Stage::Read, |report| Given::read(&[&args.input], &args.reading, None, session, &mut report.warnings))?;
     let unit = given.common_unit(&args.reading, &mut report.warnings);
     if !given.grids.is_empty() {
         return grids::inspect(args, &given, unit, session, report);
     }
     let Some(input) = given.meshes.first() else { return Err(Failure::internal("nothing was read")) };
-    session.progress.stage("examine")?;
-    let validity = report.timed("examine", |_| input::examine(&input.loaded, session))?;
+    session.progress.stage(Stage::Examine)?;
+    let validity = report.timed(Stage::Examine, |_| input::examine(&input.loaded, session))?;
     report.warnings.extend(closable(input, &validity, session)?);
     report.warnings.extend(summary::size_doubts(&input.loaded, unit));
     report.options = json!({ "unit": unit.map(|unit| unit.to_string()) });
     report.inputs = vec![super::report::InputEntry { validity: Some(validity.clone()), ..input.entry.clone() }];
     let solid = validity.is_oriented_manifold();
-    report.mass = solid.then(|| MassProperties::of(&input.loaded.mesh)).flatten();
-    report.overhang = solid.then(|| Overhang::of(&input.loaded.mesh, args.overhang));
-    if args.thickness {
-        report.thickness = Some(report.timed("thickness", |_| thickness(args, input, unit, session))?);
-    }
+    let mass = solid.then(|| MassProperties::of(&input.loaded.mesh)).flatten();
+    let overhang = solid.then(|| Overhang::of(&input.loaded.mesh, args.overhang));
+    let thickness = match args.thickness {
+        true => Some(report.timed(Stage::Thickness, |_| thickness(args, input, unit, session))?),
+        false => None,
+    };
     session.clear_bar();
     if !args.common.json {
         let mut rows = summary::inspection(input, &validity, unit);
         let name = unit.map(|unit| unit.to_string());
-        rows.extend(report.mass.iter().flat_map(|mass| mass_rows(mass, name.as_deref())));
-        rows.extend(report.overhang.iter().map(|found| overhang_row(found, &validity, name.as_deref())));
-        rows.extend(report.thickness.iter().flat_map(|thickness| thickness_rows(thickness, name.as_deref())));
+        rows.extend(mass.iter().flat_map(|mass| mass_rows(mass, name.as_deref())));
+        rows.extend(overhang.iter().map(|found| overhang_row(found, &validity, name.as_deref())));
+        rows.extend(thickness.iter().flat_map(|thickness| thickness_rows(thickness, name.as_deref())));
         super::output::write_stream(summary::table(&rows).as_bytes())?;
     }
+    report.result = Some(RunResult::Inspection { mass, overhang, thickness });
     let found: Vec<String> = failing(&args.fail_on, &validity);
     if found.is_empty() {
         return Ok(Exit::Done);

@@ -9,7 +9,6 @@ mod compare;
 mod convert;
 mod course;
 mod csg;
-mod csg_parser;
 mod decimate;
 mod devices;
 mod doubts;
@@ -39,6 +38,9 @@ mod progress_bar;
 mod render;
 mod repair;
 mod report;
+mod result;
+#[cfg(feature = "schema")]
+mod schema;
 mod sdf;
 mod session;
 mod shared_args;
@@ -48,6 +50,7 @@ mod split;
 mod summary;
 mod transform;
 mod volume;
+mod weights;
 mod words;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -172,6 +175,8 @@ fn dispatch(verb: &Verb) -> Exit {
             let job = Job { inputs, made, ..Job::new("render", &args.common) };
             run(job, |session, report| render::run(args, session, report))
         }
+        #[cfg(feature = "schema")]
+        Verb::Schema => schema::run(),
     }
 }
 

@@ -16,6 +16,7 @@ use crate::io::{
     self, DistanceSamples, Format, GridFormat, Loaded, Paint, Unit, WriteError, WriteOptions, WriteProblem,
 };
 use crate::mesh::TriMesh;
+use crate::progress::Stage;
 
 /// Where a mesh goes, and how it is encoded.
 pub struct Target {
@@ -113,7 +114,7 @@ pub fn write_verified<'a, T>(
     session: &Session,
     judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
 ) -> Result<(OutputEntry, T), Failure> {
-    session.progress.stage("write")?;
+    session.progress.stage(Stage::Write)?;
     let paint = paint.into();
     let judge = |read: &Loaded| {
         let verdict = judge(read)?;
@@ -139,7 +140,7 @@ fn write_direct<T>(
 ) -> Result<(OutputEntry, T), Failure> {
     let mut bytes = Vec::new();
     encode(target, mesh, paint, &mut bytes)?;
-    session.progress.stage("verify")?;
+    session.progress.stage(Stage::Verify)?;
     let verdict = judge(&read_back(&bytes, target)?)?;
     session.progress.check()?;
     write_at_once(&target.path, &bytes)?;
@@ -160,7 +161,7 @@ fn write_file<T>(
     buffer.flush().map_err(|e| failed(&e))?;
     drop(buffer);
     file.sync_all().map_err(|e| failed(&e))?;
-    session.progress.stage("verify")?;
+    session.progress.stage(Stage::Verify)?;
     let bytes = std::fs::read(path).map_err(|e| failed(&e))?;
     let verdict = judge(&read_back(&bytes, target)?)?;
     Ok((entry(target, &bytes), verdict))
@@ -209,7 +210,7 @@ pub fn write_grid(
         let draft = session.draft(path)?;
         let sha256 = hashed(&mut std::io::BufWriter::with_capacity(1 << 20, &draft.file))?;
         draft.file.sync_all().map_err(|e| failed(&e))?;
-        session.progress.stage("verify")?;
+        session.progress.stage(Stage::Verify)?;
         let found = sha256_of_file(&draft.path, session);
         session.progress.check()?;
         if found.map_err(|e| failed(&e))? != sha256 {

@@ -14,17 +14,20 @@ use super::input::{self, Input, is_stream};
 use super::limits;
 use super::output::write_side;
 use super::report::{OutputEntry, RunReport};
+use super::result::RunResult;
 use super::session::Session;
-use super::slice::{self, Field, SliceChoice, failure};
+use super::slice::{self, Field, SliceChoice, SliceEntry, failure};
 use crate::io::{Colours, LegendEntry, shown_colours};
 use crate::picture::{EdgeDrawing, Image, Painted, RenderOptions, View, draw_legend, render, render_pair};
+use crate::progress::Stage;
 
 /// Draws one mesh or slice, or two on one sheet.
 pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     super::output::check_extension(&args.output, "png")?;
     let paths: Vec<&Path> = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
-    let mut inputs = report
-        .timed("read", |report| Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings))?;
+    let mut inputs = report.timed(Stage::Read, |report| {
+        Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings)
+    })?;
     // What shares one camera, or one plane, must share one unit.
     inputs.common_unit(&args.reading, &mut report.warnings);
     inputs.describe(report);
@@ -37,8 +40,8 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
         "edges": format!("{:?}", args.edges).to_lowercase(), "defects": options.defects,
         "slice": slices.then(|| choice.to_string()),
     });
-    session.progress.stage("draw")?;
-    let images = report.timed("draw", |report| inputs.draw(&options, slices.then_some(&choice), session, report))?;
+    session.progress.stage(Stage::Draw)?;
+    let (images, drawn) = report.timed(Stage::Draw, |_| inputs.draw(&options, slices.then_some(&choice), session))?;
     let image = match <[Image; 1]>::try_from(images) {
         Ok([image]) => image,
         Err(images) => Image::beside(&images),
@@ -49,7 +52,7 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
     let label = if is_stream(&args.output) { "standard output".into() } else { args.output.display().to_string() };
     session.clear_bar();
     session.say(&format!("{label}: {} x {} pixels", image.width, image.height));
-    if options.defects && report.slices.len() < inputs.0.order.len() {
+    if options.defects && drawn.len() < inputs.0.order.len() {
         session.say(
             "open edges red, edges of more than two triangles magenta, intersecting triangles yellow, inner sides rust red",
         );
@@ -59,17 +62,18 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
         let entries: Vec<String> = input.loaded.legend.iter().map(entry).collect();
         session.say(&format!("{}: {}", input.label, entries.join("; ")));
     }
-    for slice in &report.slices {
+    for slice in &drawn {
         session.say(&slice.words(inputs.0.unit_of(&slice.path).as_deref()));
     }
-    report.output = Some(OutputEntry {
+    let output = OutputEntry {
         path: label,
         format: "png".into(),
         bytes: png.len() as u64,
         sha256: input::sha256(&png),
         unit: None,
         validity: None,
-    });
+    };
+    report.result = Some(RunResult::Picture { slices: drawn, output });
     let broken = limits::beyond_memory(report, args.max_memory);
     report.warnings.extend(broken.iter().cloned());
     Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
@@ -84,16 +88,15 @@ impl Inputs {
         !self.0.grids.is_empty() || args.slice.is_some()
     }
 
-    /// The images in the order of the inputs.
+    /// The images in the order of the inputs, and what is to be said of slices.
     fn draw(
         &self,
         options: &RenderOptions,
         choice: Option<&SliceChoice>,
         session: &Session,
-        report: &mut RunReport,
-    ) -> Result<Vec<Image>, Failure> {
+    ) -> Result<(Vec<Image>, Vec<SliceEntry>), Failure> {
         let Some(choice) = choice else {
-            return surfaces(&self.0.meshes.iter().collect::<Vec<_>>(), options, session);
+            return Ok((surfaces(&self.0.meshes.iter().collect::<Vec<_>>(), options, session)?, Vec::new()));
         };
         let sliced: Vec<Which> = match self.0.grids.is_empty() {
             true => self.0.order.clone(),
@@ -107,18 +110,18 @@ impl Inputs {
         let size = [options.width, options.height];
         let slices = slice::draw(&fields, choice, size, session)?;
         let mut slices = slices.into_iter();
-        let mut images = Vec::new();
+        let (mut images, mut drawn) = (Vec::new(), Vec::new());
         for which in &self.0.order {
             match (sliced.contains(which).then(|| slices.next()).flatten(), *which) {
                 (Some((image, entry)), _) => {
                     images.push(image);
-                    report.slices.push(entry);
+                    drawn.push(entry);
                 }
                 (None, Which::Mesh(n)) => images.extend(surfaces(&[&self.0.meshes[n]], options, session)?),
                 (None, Which::Grid(_)) => return Err(Failure::internal("a grid was not drawn")),
             }
         }
-        Ok(images)
+        Ok((images, drawn))
     }
 }
 

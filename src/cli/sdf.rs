@@ -11,28 +11,30 @@ use super::choices::SignChoice;
 use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
 use super::input::{self, Input, is_stream};
 use super::length::{BandChoice, Scale};
-use super::report::{OutputEntry, PlanEntry, RunReport};
+use super::report::{OutputEntry, RunReport};
+use super::result::RunResult;
 use super::session::Session;
 use super::summary::{self, Row};
 use super::words::{self, UnitName};
-use super::{limits, machine, output};
+use super::{limits, machine, output, weights};
 use crate::io::{DistanceSamples, GridFormat, SampleBlocks, Unit};
 use crate::lattice::Slot;
 use crate::mesh::Validity;
 use crate::pipeline::{
     self, DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, VoxelSize,
 };
+use crate::progress::Stage;
 
 /// Makes the field of one file.
 pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let format = format(args)?;
-    let mut inputs =
-        report.timed("read", |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
+    let mut inputs = report
+        .timed(Stage::Read, |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     let Some(input) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
-    let validity = report.timed("examine", |_| {
-        session.progress.stage("examine")?;
+    let validity = report.timed(Stage::Examine, |_| {
+        session.progress.stage(Stage::Examine)?;
         input::examine(&input.loaded, session)
     })?;
     let options = options(args, input, unit, &validity)?;
@@ -42,17 +44,19 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
         return plan(input, &options, unit, format, args, report);
     };
     report.warnings.extend(doubts(&options, &validity, format));
-    let outcome = pipeline::distance(&input.loaded.mesh, &options, &session.progress)
+    if let Ok(plan) = pipeline::plan_distance(&input.loaded.mesh, &options) {
+        session.expect(&weights::of_distances(input.loaded.mesh.triangles.len(), plan.seconds, plan.file));
+    }
+    let mut outcome = pipeline::distance(&input.loaded.mesh, &options, &session.progress)
         .map_err(|e| failure(&e, input, &options, unit, args))?;
-    report.stages.extend(outcome.report.stages.iter().cloned());
-    report.output = Some(write(path, &outcome, unit, format, session, report)?);
+    report.stages.append(&mut outcome.report.stages);
+    let output = Some(write(path, &outcome, unit, format, session, report)?);
     let fallback = outcome.report.made_by.as_ref().and_then(|made_by| made_by.fallback.as_ref());
     report.warnings.extend(fallback.map(|reason| format!("the main processor drew the slices: {reason}")));
-    report.distance = Some(outcome.report.clone());
+    report.result = Some(RunResult::Distance { distance: outcome.report.clone(), output });
     let broken = limits::beyond_memory(report, args.max_memory);
     report.warnings.extend(broken.iter().cloned());
-    report.seconds = session.start.elapsed().as_secs_f64();
-    report.peak_memory_bytes = super::machine::peak_memory();
+    report.measure(session.start);
     session.clear_bar();
     say(session, report, &outcome.report, &options, unit);
     Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
@@ -214,7 +218,7 @@ fn plan(
     if format == Some(GridFormat::Vdb) {
         plan.file = tree_bytes(&plan, options);
     }
-    report.plan = Some(PlanEntry::Distance(plan));
+    report.result = Some(RunResult::DistancePlan { plan });
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
         output::write_stream(summary::table(&plan_rows(&plan, unit.as_deref())).as_bytes())?;
@@ -280,8 +284,8 @@ pub(super) fn write(
         inside: &|brick| bricks.slot(brick) == Slot::Inside,
     };
     let samples = samples(outcome, unit, &plane, &blocks);
-    report.timed("write and verify", |_| {
-        session.progress.stage("write")?;
+    report.timed(Stage::WriteAndVerify, |_| {
+        session.progress.stage(Stage::Write)?;
         output::write_grid(path, &samples, format, session)
     })
 }
@@ -318,7 +322,7 @@ fn say(
         rows.push(("done", format!("slices {}", backend::words(made_by, "drawn"))));
     }
     rows.push(("voxel", summary::voxel(distance.voxel, distance.dims, unit)));
-    if let Some(output) = &report.output {
+    if let Some(output) = report.output() {
         let [low, high] = distance.range.map(|value| words::number(value.into()));
         let range = words::with_unit(&format!("{low} to {high}"), unit);
         rows.push(("result", format!("{}: {range}, negative inside; {}", output.path, words::bytes(output.bytes))));

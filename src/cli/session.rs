@@ -15,7 +15,7 @@ use super::files::KeptFiles;
 use super::progress_bar::Meter;
 use super::{machine, output};
 use crate::io::draft::{Draft, flush_folders, publish};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stage};
 
 /// One run.
 pub struct Session {
@@ -84,6 +84,11 @@ impl Session {
     /// So many results will be made one after the other.
     pub fn expect_frames(&self, frames: usize) {
         self.meter.expect_frames(frames);
+    }
+
+    /// The stages that will come, and the seconds that each may take.
+    pub fn expect(&self, seconds: &[(Stage, f64)]) {
+        self.meter.expect(seconds);
     }
 
     /// Takes the progress bar away.

@@ -210,6 +210,7 @@ fn interpolated(file: &GridFile, p: DVec3) -> Option<f64> {
 
 /// A slice in the report.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SliceEntry {
     /// The input.
     pub path: String,

@@ -12,14 +12,16 @@ use super::input::{self, Input};
 use super::length::{Scale, Simplify};
 use super::output::{Target, write_verified};
 use super::paint::{self, Arranged};
-use super::report::{PlanEntry, RunReport};
+use super::report::{OutputEntry, RunReport};
+use super::result::RunResult;
 use super::session::Session;
-use super::{backend, doubts, keep, limits, machine, map, negative, summary, words};
+use super::{backend, doubts, keep, limits, machine, map, negative, summary, weights, words};
 use crate::fit::{FitOptions, rounded};
 use crate::io::{Colours, Format, Loaded, Paint, Unit};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
-use crate::pipeline::{self, Options, Precision, VoxelSize};
+use crate::pipeline::{self, Options, Precision, VoxelSize, Work};
+use crate::progress::Stage;
 use crate::sdf::{RobustOptions, Trust};
 use crate::vote::VoteRule;
 
@@ -47,7 +49,7 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
     let mut target = args.output.as_deref().map(|path| Target::new(path, &args.writing)).transpose()?;
     args.map.as_deref().map_or(Ok(()), super::compare::check_map)?;
     let mut inputs = report
-        .timed("read", |report| input::read_operands(&job.paths, &args.reading, session, &mut report.warnings))?;
+        .timed(Stage::Read, |report| input::read_operands(&job.paths, &args.reading, session, &mut report.warnings))?;
     for (input, name) in inputs.iter_mut().zip(&job.names) {
         input.entry.name = Some(name.clone());
     }
@@ -160,7 +162,7 @@ fn plan(
         Some(change) => change.plan(&meshes[0], options, scale),
     };
     let plan = planned(options)?.map_err(|e| failure(&e, &inputs, unit, args))?;
-    report.plan = Some(PlanEntry::Solid(plan));
+    report.result = Some(RunResult::Plan { plan });
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
         let text = summary::table(&summary::plan(&plan, unit.as_deref()));
@@ -188,8 +190,8 @@ fn make(
 ) -> Result<Exit, Failure> {
     let args = job.args;
     let unit = scale.unit;
-    report.timed("examine", |report| {
-        session.progress.stage("examine")?;
+    report.timed(Stage::Examine, |report| {
+        session.progress.stage(Stage::Examine)?;
         for (input, entry) in inputs.iter().zip(&mut report.inputs) {
             entry.validity = Some(input::examine(&input.loaded, session)?);
         }
@@ -203,6 +205,9 @@ fn make(
         (inputs, options) = (std::slice::from_ref(&rest), &of_rest);
     }
     let meshes: Vec<TriMesh> = inputs.iter().map(|input| input.loaded.mesh.clone()).collect();
+    if let Ok(work) = Work::of(&meshes, options) {
+        session.expect(&weights::of_solid(report.verb, &work, options.fit.as_ref()));
+    }
     let made = match &job.change {
         None => pipeline::boolean(&meshes, expression, options, &session.progress).map(Changed::from),
         Some(change) => change.apply(&meshes[0], options, scale, session, report)?,
@@ -216,14 +221,14 @@ fn make(
             canal_of = left.into_iter().map(|t| canal_of[t]).collect();
         }
     }
-    report.stages.extend(outcome.report.stages.iter().cloned());
-    report.warnings.extend(outcome.report.warnings.iter().cloned());
-    report.pipeline = Some(outcome.report.clone());
+    report.stages.append(&mut outcome.report.stages);
+    report.warnings.append(&mut outcome.report.warnings);
+    report.result = Some(RunResult::solid(outcome.report.clone()));
     let lost = limits::lost(report);
     let writes = target.is_some() || args.map.is_some();
     let withheld = writes && !lost.is_empty() && !args.keeps_partial();
     if let Some(path) = args.map.as_ref().filter(|_| !withheld) {
-        report.timed("map", |_| map::write(path, &outcome, &meshes, &canal_of, session))?;
+        report.timed(Stage::Map, |_| map::write(path, &outcome, &meshes, &canal_of, session))?;
     }
     drop(meshes);
     if let Some(target) = target.filter(|_| !withheld) {
@@ -232,13 +237,13 @@ fn make(
         let textures: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.texture.as_ref())).collect();
         let texture = pipeline::carry_texture(&outcome, &textures);
         let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
-        write(&outcome.mesh, paint, target, session, report)?;
+        let written = write(&outcome.mesh, paint, target, session, report)?;
+        report.written(written);
     }
     let beyond: Vec<String> =
         limits::guessed(report).into_iter().chain(limits::beyond_memory(report, args.max_memory)).collect();
     report.warnings.extend(beyond.iter().chain(lost.iter().filter(|_| !withheld)).cloned());
-    report.seconds = session.start.elapsed().as_secs_f64();
-    report.peak_memory_bytes = super::machine::peak_memory();
+    report.measure(session.start);
     session.clear_bar();
     let name = unit.map(|unit| unit.to_string());
     summary::say(session, report, name.as_deref());
@@ -257,7 +262,7 @@ pub(super) fn write<'a>(
     target: &Target,
     session: &Session,
     report: &mut RunReport,
-) -> Result<(), Failure> {
+) -> Result<OutputEntry, Failure> {
     let paint = paint.into();
     report.warnings.extend(paint::lost(mesh, &paint, target));
     let arranged = Arranged::new(mesh, &paint, target.options.format);
@@ -269,13 +274,12 @@ pub(super) fn write<'a>(
     let of_unit = target.unit_note().filter(|note| !report.warnings.contains(note));
     report.warnings.extend(of_unit);
     let factor = target.options.factor();
-    let (entry, validity) = report.timed("write and verify", |_| {
+    let (entry, validity) = report.timed(Stage::WriteAndVerify, |_| {
         write_verified(target, &stored, arranged.paint(), session, |read| {
             judge(read, (&stored, factor), moved, session)
         })
     })?;
-    report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
-    Ok(())
+    Ok(OutputEntry { validity: Some(validity), ..entry })
 }
 
 /// The mesh with the numbers that a format holds, and how far the farthest vertex moves for it, model units.

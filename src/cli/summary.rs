@@ -30,7 +30,7 @@ pub fn table(rows: &[Row]) -> String {
 /// Says what was wrong, what was done and what came out.
 pub fn say(session: &Session, report: &RunReport, unit: UnitName<'_>) {
     session.say(table(&rows(report, unit)).trim_end());
-    if let Some(pipeline) = report.pipeline.as_ref().filter(|_| session.verbose) {
+    if let Some(pipeline) = report.pipeline().filter(|_| session.verbose) {
         session.say(table(&details(report, pipeline, unit)).trim_end());
     }
 }
@@ -38,7 +38,7 @@ pub fn say(session: &Session, report: &RunReport, unit: UnitName<'_>) {
 fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
     let mut rows = input_rows(report);
     rows.extend(report.options["preset"].as_str().map(|text| ("preset", text.to_owned())));
-    if let Some(pipeline) = &report.pipeline {
+    if let Some(pipeline) = report.pipeline() {
         rows.extend(done(pipeline, unit).into_iter().map(|text| ("done", text)));
         if pipeline.lattice {
             rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
@@ -53,7 +53,7 @@ fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
 
 /// The mesh that was written.
 pub fn result_rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
-    let Some((output, validity)) = report.output.as_ref().and_then(|o| Some((o, o.validity.as_ref()?))) else {
+    let Some((output, validity)) = report.output().and_then(|o| Some((o, o.validity.as_ref()?))) else {
         return Vec::new();
     };
     // The file may be in another unit than the model is told of in.

@@ -9,7 +9,7 @@ use super::{Error, MorphologyOptions, Options, Outcome, boolean, kind, stages};
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
 use crate::morphology::{self, Balls, Body, Canal, Operation};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stage};
 
 /// Options of [`canals`].
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +35,7 @@ pub enum Remove {
 
 /// What was found of canals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CanalReport {
     /// The diameter that was asked for, model units.
     pub max_diameter: f64,
@@ -73,7 +74,7 @@ pub fn canals(input: &TriMesh, options: &CanalOptions, progress: &Progress) -> R
     let body = Body::new(&solid.mesh, None);
     let centres = run.there(&body, radius, &mut stages)?;
     let balls = Balls::new(&centres, radius);
-    stages.begin("canals")?;
+    stages.begin(Stage::Canals)?;
     let lattice = run.lattice(0.0)?;
     let canals = morphology::canals(&body, (&balls, &centres), &lattice, progress).map_err(|e| run.error(e))?;
     let removed = chosen(&options.remove, canals.list.len() as u32)?;

@@ -13,7 +13,7 @@ use crate::lattice::{BRICK, Grid, Lattice, Slot};
 use crate::ldi::{Expression, MAX_VOXELS, Spans, ldis, spans};
 use crate::mesh::TriMesh;
 use crate::orient::{OrientMode, OrientReport};
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 use crate::sdf::exact::{self, Band, ExactError, ExactOptions, Sign};
 use crate::sdf::{self, Levels, LevelsError, RobustOptions, characteristics, levels_memory};
 use crate::vote::{Jury, VoteReport, VoteRule, Winding, doubts, vote_near_surface};
@@ -32,6 +32,7 @@ const WINDING_SECONDS: f64 = 150e-9;
 
 /// How the distance is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum DistanceMethod {
     /// To the nearest triangle, exactly.
@@ -48,6 +49,7 @@ pub enum DistanceMethod {
 
 /// What tells inside from outside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum DistanceSign {
     /// The pseudonormal at the nearest point of the mesh as it is: for closed, oriented ones.
@@ -104,6 +106,7 @@ pub struct DistanceOutcome {
 
 /// The account of one run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DistanceReport {
     /// Position of the first voxel, model units.
     pub origin: [f64; 3],
@@ -125,12 +128,14 @@ pub struct DistanceReport {
     pub vote: Option<VoteReport>,
     /// Which processor made the field, where there is a choice.
     pub made_by: Option<BackendReport>,
-    /// Wall-clock time of each stage, in order.
+    /// Wall-clock time of each stage, in order. Not written with the rest, as in [`super::Report::stages`].
+    #[serde(skip)]
     pub stages: Vec<StageTime>,
 }
 
 /// What a field would cost, before it is made.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DistancePlan {
     /// Voxel spacing, model units.
     pub voxel: f64,
@@ -169,15 +174,15 @@ pub fn distance(input: &TriMesh, options: &DistanceOptions, progress: &Progress)
     let mut report = DistanceReport::default();
     let field = match (options.method, options.sign) {
         (DistanceMethod::Exact, DistanceSign::Pseudonormal) => {
-            stages.begin("distance")?;
+            stages.begin(Stage::Distance)?;
             run.exact(input, Sign::Pseudonormal)?
         }
         (DistanceMethod::Characteristics, _) => {
-            stages.begin("distance")?;
+            stages.begin(Stage::Distance)?;
             run.characteristics(input)?
         }
         (DistanceMethod::Prism, _) => {
-            stages.begin("distance")?;
+            stages.begin(Stage::Distance)?;
             let (field, made_by) = run.prism(input)?;
             report.made_by = Some(made_by);
             field
@@ -302,9 +307,9 @@ impl Run<'_> {
         report: &mut DistanceReport,
     ) -> Result<Grid<f32>, Error> {
         let (progress, orient, lattice) = (self.progress, self.options.orient, &self.lattice);
-        stages.begin("orient")?;
+        stages.begin(Stage::Orient)?;
         let mut soup = prepare::prepare(std::slice::from_ref(input), orient, progress)?;
-        stages.begin("ldi")?;
+        stages.begin(Stage::Ldi)?;
         let mut layers = ldis(&soup.mesh, lattice, 1, progress)?;
         soup.turn_patches(&mut layers, orient, progress)?;
         report.orient = soup.reports.first().cloned();
@@ -313,29 +318,29 @@ impl Run<'_> {
         match (self.options.method, self.options.sign) {
             (DistanceMethod::Exact, DistanceSign::Winding) => {
                 drop(layers);
-                stages.begin("distance")?;
+                stages.begin(Stage::Distance)?;
                 return self.exact(&soup.mesh, Sign::Winding(&winding, &expression));
             }
             (DistanceMethod::Exact, DistanceSign::Levels) => {
                 drop(layers);
-                stages.begin("levels")?;
+                stages.begin(Stage::Levels)?;
                 let levels = Levels::of(&soup.mesh, lattice, progress).map_err(no_levels)?;
-                stages.begin("distance")?;
+                stages.begin(Stage::Distance)?;
                 return self.exact(&soup.mesh, Sign::Levels(&levels));
             }
             _ => {}
         }
         let hits = solid::count(&layers);
-        stages.begin("spans")?;
+        stages.begin(Stage::Spans)?;
         let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, &expression));
         let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
         solid::refuse_scattered(&spans, hits)?;
-        stages.begin("vote")?;
+        stages.begin(Stage::Vote)?;
         let (operands, rule) = (&soup.operands, VoteRule::Winding);
         let jury = Jury { spans: &spans, operands, expression: &expression, rule, winding: &winding };
         let votes = vote_near_surface(&jury, progress)?;
         report.vote = Some(doubts(&votes, lattice));
-        stages.begin("distance")?;
+        stages.begin(Stage::Distance)?;
         match self.options.method {
             DistanceMethod::Exact | DistanceMethod::Characteristics | DistanceMethod::Prism => {
                 self.exact(&soup.mesh, Sign::Votes(&votes))

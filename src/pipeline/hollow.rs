@@ -11,7 +11,7 @@ use super::{Error, MorphologyOptions, Options, Outcome, TriangleSource, VoxelSiz
 use crate::ldi::{Expression, Operands};
 use crate::mesh::{ClosestTree, Pseudonormals, TriMesh};
 use crate::morphology::Operation;
-use crate::progress::Progress;
+use crate::progress::{Progress, Stage};
 use crate::shells::{Shell, bodies, shells};
 
 /// Walls are at least this many voxels thick.
@@ -48,6 +48,7 @@ pub struct Drain {
 
 /// What was hollowed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HollowReport {
     /// Thickness of the wall, model units.
     pub wall: f64,
@@ -65,6 +66,7 @@ pub struct HollowReport {
 
 /// A drain as it was made; model units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DrainReport {
     /// Where it begins, on the surface.
     pub at: [f64; 3],
@@ -89,7 +91,7 @@ pub fn hollow(input: &TriMesh, options: &HollowOptions, progress: &Progress) -> 
     let fixed = Options { voxel: VoxelSize::Length(h), ..options.solid.clone() };
     let solid = boolean(std::slice::from_ref(input), &Expression::Operand(0), &fixed, progress)?;
     let mut stages = stages::Stages::new(progress);
-    stages.begin("hollow")?;
+    stages.begin(Stage::Hollow)?;
     let bare = Options { classes: Vec::new(), ..fixed };
     let shrink = MorphologyOptions { operation: Operation::Erode, radius: wall, mitre: None, solid: bare.clone() };
     let nothing = || Error::NothingEnclosed {
@@ -109,7 +111,7 @@ pub fn hollow(input: &TriMesh, options: &HollowOptions, progress: &Progress) -> 
         return Err(nothing());
     }
     let drills = drills(&solid.mesh, &cavity, &options.drains, h)?;
-    stages.begin("subtract")?;
+    stages.begin(Stage::Subtract)?;
     let count = 2 + drills.len();
     let mut operands = vec![solid.mesh.clone(), cavity];
     operands.extend(drills.iter().map(|drill| drill.0.clone()));

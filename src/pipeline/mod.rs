@@ -24,6 +24,7 @@ mod textures;
 mod thicken;
 mod thickness;
 mod topology;
+mod work;
 
 pub use apart::StandingReport;
 pub use backend::{Backend, BackendReport};
@@ -48,6 +49,7 @@ pub use textures::{carry_texture, carry_texture_to_simpler, classes_of};
 pub use thicken::{SheetSide, ThickenOptions, ThickenReport, thicken};
 pub use thickness::{LengthsReport, ThicknessReport, thickness};
 pub use topology::{LostBody, Topology, TopologyReport};
+pub use work::Work;
 
 use apart::Apart;
 use frame::Frame;
@@ -59,7 +61,7 @@ use crate::lattice::Lattice;
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 use crate::sdf::RobustOptions;
 use crate::vote::VoteRule;
 
@@ -117,6 +119,7 @@ pub struct Options {
 
 /// What numbers a result may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Precision {
     /// Every coordinate is an `f32`, so that STL and glTF hold it unchanged, and the result is valid with these; only for operands far from the
@@ -174,6 +177,7 @@ pub enum TriangleSource {
 
 /// What a run would cost, before it is run.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Plan {
     /// Voxel spacing, model units.
     pub voxel: f64,
@@ -314,9 +318,9 @@ fn evaluate(
     let h = prepare::spacing(&prepare::bounds(operands)?, options.voxel)?;
     plan::check_standing(operands.iter().map(|operand| operand.triangles.len()).sum(), options)?;
     let mut stages = stages::Stages::new(progress);
-    stages.begin("orient")?;
+    stages.begin(Stage::Orient)?;
     let soup = prepare::prepare(operands, options.orient, progress)?;
-    stages.begin("shells")?;
+    stages.begin(Stage::Shells)?;
     let mut apart = Apart::find(&soup, expression, options, progress)?;
     let standing = apart.surface(&soup, operands, options, h, progress)?;
     let job = rebuild::Job { expression, options, h, progress };

@@ -15,7 +15,7 @@ use crate::mesh::{TriMesh, ValidateOptions, validate};
 use crate::morphology::{
     Balls, Body, Centres, MorphologyError, Offset, Operation, Region, Remain, closed, offset, places, reached,
 };
-use crate::progress::Progress;
+use crate::progress::{Progress, Stage};
 use crate::sdf::exact::{ExactDistance, PointSign};
 
 /// Options of [`morphology`].
@@ -34,6 +34,7 @@ pub struct MorphologyOptions {
 
 /// What was done to the solid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MorphologyReport {
     /// What was done.
     pub operation: Operation,
@@ -191,10 +192,10 @@ impl Run<'_> {
     }
 
     pub(super) fn one_way(&self, body: &Body<'_>, level: f64, stages: &mut stages::Stages<'_>) -> Result<Made, Error> {
-        stages.begin("offset")?;
+        stages.begin(Stage::Offset)?;
         let lattice = self.lattice(level.max(0.0) * self.options.mitre.unwrap_or(1.0))?;
         let offset = offset(body, level, &lattice, self.progress).map_err(|e| self.error(e))?;
-        stages.begin("fit")?;
+        stages.begin(Stage::Fit)?;
         let off = |p| (body.at(p, level.abs() + self.h).0 - level).abs();
         self.fitted((offset, &lattice), (&TriMesh::default(), &off), Evidence::default(), self.options.solid.fit, level)
     }
@@ -212,7 +213,7 @@ impl Run<'_> {
         radius: f64,
         stages: &mut stages::Stages<'_>,
     ) -> Result<Centres, Error> {
-        stages.begin("first offset")?;
+        stages.begin(Stage::FirstOffset)?;
         let lattice = self.lattice(radius.max(0.0))?;
         let mut there = offset(body, radius, &lattice, self.progress).map_err(|e| self.error(e))?;
         let between = std::mem::take(&mut there.remains);
@@ -236,14 +237,14 @@ impl Run<'_> {
         region: Option<&Region<'_>>,
         stages: &mut stages::Stages<'_>,
     ) -> Result<Made, Error> {
-        stages.begin("second offset")?;
+        stages.begin(Stage::SecondOffset)?;
         let lattice = self.lattice(0.0)?;
         let back = closed(body, balls, &lattice, region, self.progress).map_err(|e| self.error(e))?;
         let reached = reached(body, radius, &lattice, region, self.progress)?;
         if !back.changed && reached.iter().all(|reached| reached.touched == reached.tried) {
             return Ok(self.unchanged());
         }
-        stages.begin("fit")?;
+        stages.begin(Stage::Fit)?;
         let evidence = Evidence::of_samples(reached.iter().map(|r| (r.tried, r.touched)));
         let off = |p| {
             let own = body.at(p, self.h).0.abs();

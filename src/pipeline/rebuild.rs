@@ -13,7 +13,7 @@ use crate::fit::{Facets, fit};
 use crate::lattice::Lattice;
 use crate::ldi::{Evidence, Expression, Spans, spans};
 use crate::mesh::TriMesh;
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 use crate::sdf;
 use crate::vote::{Jury, Winding, vote_near_surface};
 
@@ -83,25 +83,25 @@ impl Job<'_> {
         let lattice = prepare::lattice(&bounds, super::VoxelSize::Length(h))?;
         let operands = std::slice::from_ref(&soup.mesh);
         plan::check_limits(operands, &lattice, options, plan::Offsets::default())?;
-        stages.begin("ldi")?;
+        stages.begin(Stage::Ldi)?;
         let crossings = plan::crossings(operands, &lattice);
         let (mut layers, made_by) = backend::layers(&soup.mesh, &lattice, options.backend, crossings, progress)?;
         soup.turn_patches(&mut layers, options.orient, progress)?;
         let hits = solid::count(&layers);
-        stages.begin("spans")?;
+        stages.begin(Stage::Spans)?;
         let mut evidence = Evidence::new(&layers, soup.mesh.triangles.len());
         let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, expression));
         let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
         evidence.add(&spans);
         solid::refuse_scattered(&spans, hits)?;
-        stages.begin("vote")?;
+        stages.begin(Stage::Vote)?;
         let winding = Winding::new(&soup.mesh, &soup.operands, &lattice, progress);
         let jury = Jury { spans: &spans, operands: &soup.operands, expression, rule: options.rule, winding: &winding };
         let votes = vote_near_surface(&jury, progress)?;
-        stages.begin("sdf")?;
+        stages.begin(Stage::Sdf)?;
         let planes = soup.planes(&lattice);
         let distance = sdf::robust(&spans, &planes, &votes, &options.robust, progress)?;
-        stages.begin("contour")?;
+        stages.begin(Stage::Contour)?;
         let lid = |inside, outside| refine::lid(&winding, expression, inside, outside);
         let crossing = solid::crossings(&spans, &distance, lid);
         let mut raw = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;
@@ -111,12 +111,12 @@ impl Job<'_> {
             });
         }
         let lids = refine::lids(&mut raw, (&soup, &lattice), &winding, expression, progress)?;
-        stages.begin("collapse")?;
+        stages.begin(Stage::Collapse)?;
         let facets = Facets::new(&soup.mesh, lids).with_classes(soup.classes(&options.classes));
         let mut surface = refine::merged(raw, &facets, &lattice, options, progress)?;
         let mut report = solid::report(&lattice, prepare::finest(&bounds), &spans, hits, &votes);
         if let Some(options) = &options.fit {
-            stages.begin("fit")?;
+            stages.begin(Stage::Fit)?;
             let (fit, account) = fit(&surface, &facets, &evidence, lattice.h, options, progress)?;
             surface = fit;
             report.fit = Some(account);

@@ -11,10 +11,12 @@ use super::{
 
 use crate::fit::FitReport;
 use crate::orient::OrientReport;
+use crate::progress::Stage;
 use crate::vote::VoteReport;
 
 /// The account of one run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Report {
     /// Voxel spacing, model units.
     pub voxel: f64,
@@ -52,9 +54,12 @@ pub struct Report {
     pub closed_triangles: usize,
     /// How many triangles of the result are kept, rebuilt and made up.
     pub triangles: TriangleCounts,
-    /// Wall-clock time of each stage, in order.
+    /// Wall-clock time of each stage, in order. Not written with the rest: a whole run has stages besides these, and tells all of
+    /// them in one list; so it is with warnings.
+    #[serde(skip)]
     pub stages: Vec<StageTime>,
     /// Sentences a user should read, most important first.
+    #[serde(skip)]
     pub warnings: Vec<String>,
 }
 
@@ -77,6 +82,7 @@ impl Report {
 
 /// Rays and crossings of all 13 directions.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LdiReport {
     /// Rays that hit something.
     pub rays: usize,
@@ -92,6 +98,7 @@ pub struct LdiReport {
 
 /// Evidence of walls and gaps that the voxel size may not hold.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThinReport {
     /// Spans (ray pieces inside the solid) along the three face directions.
     pub spans: usize,
@@ -112,6 +119,7 @@ pub struct ThinReport {
 
 /// A place where walls or gaps are thinner than the lattice holds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThinRegion {
     /// Whether it is a gap; else a wall.
     pub gap: bool,
@@ -127,9 +135,10 @@ pub struct ThinRegion {
 
 /// Seconds a stage took.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StageTime {
-    /// Name of the stage.
-    pub stage: &'static str,
+    /// The stage.
+    pub stage: Stage,
     /// Wall-clock seconds.
     pub seconds: f64,
 }

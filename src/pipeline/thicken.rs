@@ -12,7 +12,7 @@ use crate::digits;
 use crate::ldi::Expression;
 use crate::mesh::{Pseudonormals, TriMesh};
 use crate::morphology::{Body, Operation, middles};
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 
 /// Walls are at least this many voxels thick: of less the lattice makes no round edge.
 const LEAST_VOXELS: f64 = 4.0;
@@ -26,6 +26,7 @@ const APART: f64 = 1.0;
 
 /// On which side of an open sheet there will be material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum SheetSide {
     /// Half of the thickness on either side.
@@ -50,6 +51,7 @@ pub struct ThickenOptions {
 
 /// What was too thin.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThickenReport {
     /// The least thickness, model units.
     pub least: f64,
@@ -108,7 +110,7 @@ pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -
         Err(error) => return Err(error),
     };
     let mut stages = stages::Stages::new(progress);
-    stages.begin("thin walls")?;
+    stages.begin(Stage::ThinWalls)?;
     let body = solid.as_ref().map(|solid| Body::new(&solid.mesh, None));
     let (mut thin, thin_area) = match &body {
         Some(body) => middles(body, least, h, progress)?,

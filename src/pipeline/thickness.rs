@@ -8,10 +8,11 @@ use super::prepare::{self, MAX_RESOLUTION, TYPED};
 use super::{Error, Options, plan, solid};
 use crate::ldi::{Expression, Spans, THIN, ldis, spans, widths};
 use crate::mesh::TriMesh;
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 
 /// The widths of walls and gaps, and the voxel that holds them. Model units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThicknessReport {
     /// Voxel spacing of the rays.
     pub voxel: f64,
@@ -32,6 +33,7 @@ pub struct ThicknessReport {
 
 /// How some lengths are distributed, model units.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LengthsReport {
     /// How many there are.
     pub count: usize,
@@ -58,12 +60,12 @@ pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Res
     let bounds = prepare::bounds(operands)?;
     let lattice = prepare::lattice(&bounds, options.voxel)?;
     plan::check_limits(operands, &lattice, options, plan::Offsets::default())?;
-    progress.stage("orient")?;
+    progress.stage(Stage::Orient)?;
     let mut soup = prepare::prepare(operands, options.orient, progress)?;
-    progress.stage("ldi")?;
+    progress.stage(Stage::Ldi)?;
     let mut layers = ldis(&soup.mesh, &lattice, 1, progress)?;
     soup.turn_patches(&mut layers, options.orient, progress)?;
-    progress.stage("spans")?;
+    progress.stage(Stage::Spans)?;
     let rays = solid::count(&layers).rays;
     let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, &Expression::Operand(0)));
     let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;

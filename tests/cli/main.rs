@@ -10,6 +10,7 @@ mod fields;
 mod files;
 mod maps;
 mod readers;
+mod schema;
 mod sdf;
 mod slices;
 mod solids;

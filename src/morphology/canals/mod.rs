@@ -21,6 +21,7 @@ use fill::{Fill, Part};
 
 /// What a canal is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum CanalKind {
     /// It leads through: filling it takes handles away.
@@ -49,6 +50,7 @@ impl std::fmt::Display for CanalKind {
 
 /// One canal; all in model units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Canal {
     /// Its number, from 1: the widest first.
     pub number: u32,

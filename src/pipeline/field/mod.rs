@@ -13,16 +13,15 @@ use super::distance::DistanceOutcome;
 use super::frame::Frame;
 use super::morphology::volume;
 use super::{
-    DistanceReport, Dropped, Error, Options, Outcome, Report, TriangleCounts, TriangleSource, VoxelSize, prepare,
-    refine, stages,
+    DistanceReport, Error, Options, Outcome, Report, TriangleCounts, TriangleSource, VoxelSize, prepare, refine, stages,
 };
 use crate::digits;
-use crate::field::filter::FilterError;
-use crate::field::{Extent, Field, FillError, FillOptions, LevelError, Shared, fill, level};
-use crate::fit::{Facets, FitReport, fit};
+use crate::field::language::{self, BuildError};
+use crate::field::{Field, FillError, FillOptions, LevelError, Shared, fill, level};
+use crate::fit::{Facets, fit};
 use crate::ldi::{Evidence, MAX_VOXELS};
 use crate::mesh::Bounds;
-use crate::progress::Progress;
+use crate::progress::{Progress, Stage};
 use crate::sdf::exact::Band;
 
 /// A lattice that cuts a shape off grows by this part of the shape's extent.
@@ -37,6 +36,7 @@ const FLAT: f64 = 0.05;
 
 /// What a field was made of, and what became of it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FieldReport {
     /// What was done to the operands before they became fields.
     pub operands: Vec<OperandReport>,
@@ -44,14 +44,11 @@ pub struct FieldReport {
     pub made: usize,
     /// Volume of the result, cubic model units.
     pub volume: f64,
-    /// Sharp edges and simplification; `None` without a fit.
-    pub fit: Option<FitReport>,
-    /// Surfaces smaller than the caller wants, see [`crate::pipeline::drop_smaller`].
-    pub smaller: Dropped,
 }
 
 /// How an operand became a field.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OperandReport {
     /// Number of the operand.
     pub operand: usize,
@@ -65,8 +62,8 @@ pub struct OperandReport {
 /// See [`Error`]; [`Error::NothingEnclosed`] also for shapes without an end.
 pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> Result<(Outcome, FieldReport), Error> {
     let mut stages = stages::Stages::new(progress);
-    stages.begin("field")?;
-    let extent = shape_extent(&built.field)?;
+    stages.begin(Stage::Field)?;
+    let extent = language::shape_extent(&built.field)?;
     let h = field_spacing(built, options)?;
     let frame = Frame::of_box(&extent, options);
     let mut extent = frame.local_bounds(&extent);
@@ -80,7 +77,7 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         }
         tries += 1;
         if tries == MOST_TRIES {
-            return Err(endless());
+            return Err(BuildError::Endless.into());
         }
         let room = MORE_ROOM * extent.size().max_element();
         extent = Bounds { min: extent.min - room, max: extent.max + room };
@@ -98,11 +95,11 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
     let wanted = |p: DVec3| off(field, p, lattice.h);
     let source = &frame.local(std::slice::from_ref(&sources.mesh))[0];
     let facets = Facets::new(source, level.planes).with_wanted(&wanted);
-    stages.begin("collapse")?;
+    stages.begin(Stage::Collapse)?;
     let mut surface = refine::merged(contour, &facets, &lattice, options, progress)?;
     let mut fitted = None;
     if let Some(options) = options.fit {
-        stages.begin("fit")?;
+        stages.begin(Stage::Fit)?;
         let options = crate::fit::FitOptions { keep: false, ..options };
         let (fit, report) = fit(&surface, &facets, &Evidence::default(), lattice.h, &options, progress)?;
         (surface, fitted) = (fit, Some(report));
@@ -114,19 +111,13 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         voxel: lattice.h,
         dims: lattice.dims.to_array(),
         lattice: true,
-        fit: fitted.clone(),
+        fit: fitted,
         closed_triangles: made,
         triangles: TriangleCounts { kept: 0, rebuilt: origins.len() - made, made_up: made },
         stages: stages.finish(),
         ..Report::default()
     };
-    let account = FieldReport {
-        operands: built.operands.clone(),
-        made,
-        volume: volume(&surface.mesh),
-        fit: fitted,
-        smaller: Dropped::default(),
-    };
+    let account = FieldReport { operands: built.operands.clone(), made, volume: volume(&surface.mesh) };
     Ok((frame.global(Outcome { mesh: surface.mesh, sources: origins, lattice, report }), account))
 }
 
@@ -163,8 +154,8 @@ pub fn field_grid(
     progress: &Progress,
 ) -> Result<DistanceOutcome, Error> {
     let mut stages = stages::Stages::new(progress);
-    stages.begin("field")?;
-    let extent = built.field.extent().bounds().or(built.parts).ok_or_else(endless)?;
+    stages.begin(Stage::Field)?;
+    let extent = built.field.extent().bounds().or(built.parts).ok_or(BuildError::Endless)?;
     let frame = Frame::of_box(&extent, options);
     let mut lattice = prepare::lattice(&frame.local_bounds(&extent), options.voxel)?;
     let h = lattice.h;
@@ -209,26 +200,12 @@ pub fn field_values(field: &Shared, points: &[DVec3]) -> Vec<f64> {
     points.par_chunks(64).flat_map_iter(packet).collect()
 }
 
-/// The box that holds the shape.
-fn shape_extent(field: &Shared) -> Result<Bounds, Error> {
-    let nothing = || Error::NothingEnclosed { reason: "the field is nowhere negative: nothing is inside".into() };
-    match field.extent() {
-        Extent::Unbounded => Err(endless()),
-        extent => extent.bounds().ok_or_else(nothing),
-    }
-}
-
 /// The voxel spacing that [`field_surface`] takes, model units.
 ///
 /// # Errors
 /// Those of [`field_surface`].
 pub fn field_spacing(built: &Built, options: &Options) -> Result<f64, Error> {
-    Ok(prepare::lattice(&shape_extent(&built.field)?, options.voxel)?.h)
-}
-
-fn endless() -> Error {
-    let reason = "the shape has no end: intersect it with one that has (`... & box(...)`)";
-    Error::NothingEnclosed { reason: reason.into() }
+    Ok(prepare::lattice(&language::shape_extent(&built.field)?, options.voxel)?.h)
 }
 
 fn not_filled(error: FillError) -> Error {
@@ -242,11 +219,5 @@ fn no_level(error: LevelError) -> Error {
     match error {
         LevelError::Fill(error) => not_filled(error),
         LevelError::Stopped(stopped) => stopped.into(),
-    }
-}
-
-impl From<FilterError> for Error {
-    fn from(error: FilterError) -> Self {
-        Self::Filter(error)
     }
 }
