@@ -17,6 +17,8 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+pub mod backend;
+
 pub mod cli;
 pub mod compare;
 pub mod contour;
@@ -37,4 +39,7 @@ pub mod pipeline;
 pub mod progress;
 pub mod sdf;
 pub mod shells;
+pub mod survey;
 pub mod vote;
+
+pub use glam;

@@ -21,7 +21,8 @@ use crate::io::{DistanceSamples, GridFormat, SampleBlocks, Unit};
 use crate::lattice::Slot;
 use crate::mesh::Validity;
 use crate::pipeline::{
-    self, DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, VoxelSize,
+    self, DistanceError, DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign,
+    LimitError, VoxelSize,
 };
 use crate::progress::Stage;
 
@@ -187,7 +188,7 @@ fn smaller(input: &Input, options: &DistanceOptions, allowed: u64) -> &'static s
 }
 
 fn failure(
-    error: &pipeline::Error,
+    error: &DistanceError,
     input: &Input,
     options: &DistanceOptions,
     unit: Option<Unit>,
@@ -195,7 +196,7 @@ fn failure(
 ) -> Failure {
     let unit = unit.map(|unit| unit.to_string());
     match error {
-        pipeline::Error::Memory { needed, allowed, .. } => {
+        DistanceError::Limit(LimitError::Memory { needed, allowed, .. }) => {
             Failure::memory(*needed, *allowed, args.max_memory).hint(smaller(input, options, *allowed))
         }
         _ => {

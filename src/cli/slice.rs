@@ -13,7 +13,7 @@ use super::length::QuantityError;
 use super::report::InputEntry;
 use super::session::Session;
 use super::words::{self, UnitName};
-use crate::io::{GridFile, GridReadProblem, Unit, read_grid_within};
+use crate::io::{FileProblem, GridFile, Unit, read_grid_within};
 use crate::mesh::Bounds;
 use crate::picture::{Axis, Image, RenderError, SliceColours, SlicePlane, SliceSamples, sample_slice};
 use crate::sdf::exact::{ExactDistance, PointSign};
@@ -26,12 +26,12 @@ const MARGIN: f64 = 0.15;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SliceChoice {
     axis: Axis,
-    at: Place,
+    at: Location,
 }
 
 /// Where on the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Place {
+enum Location {
     /// A share of the extent, percent.
     Percent(f64),
     /// In model units.
@@ -42,7 +42,7 @@ enum Place {
 
 impl Default for SliceChoice {
     fn default() -> Self {
-        Self { axis: Axis::Z, at: Place::Percent(50.0) }
+        Self { axis: Axis::Z, at: Location::Percent(50.0) }
     }
 }
 
@@ -62,9 +62,9 @@ impl FromStr for SliceChoice {
         let suffix = &at.trim()[number.len()..];
         let value: f64 = number.trim_end().parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(wrong)?;
         let at = match suffix {
-            "" => Place::Plain(value),
-            "%" => Place::Percent(value),
-            unit => Place::Unit(value, unit.parse().map_err(|_| wrong())?),
+            "" => Location::Plain(value),
+            "%" => Location::Percent(value),
+            unit => Location::Unit(value, unit.parse().map_err(|_| wrong())?),
         };
         Ok(Self { axis, at })
     }
@@ -74,9 +74,9 @@ impl fmt::Display for SliceChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let axis = axis_name(self.axis);
         match self.at {
-            Place::Percent(value) => write!(f, "{axis}={value}%"),
-            Place::Plain(value) => write!(f, "{axis}={value}"),
-            Place::Unit(value, unit) => write!(f, "{axis}={value}{unit}"),
+            Location::Percent(value) => write!(f, "{axis}={value}%"),
+            Location::Plain(value) => write!(f, "{axis}={value}"),
+            Location::Unit(value, unit) => write!(f, "{axis}={value}{unit}"),
         }
     }
 }
@@ -91,9 +91,9 @@ impl SliceChoice {
         let k = self.axis.number();
         let [low, high] = [bounds.min[k], bounds.max[k]];
         let at = match self.at {
-            Place::Percent(share) => low + (high - low) * share / 100.0,
-            Place::Plain(value) => value,
-            Place::Unit(value, own) => {
+            Location::Percent(share) => low + (high - low) * share / 100.0,
+            Location::Plain(value) => value,
+            Location::Unit(value, own) => {
                 let model = unit.ok_or_else(|| QuantityError::UnitUnknown { length: format!("{value}{own}") })?;
                 value * (own.metres() / model.metres())
             }
@@ -130,11 +130,14 @@ pub fn grid_of(
 ) -> Result<GridInput, Failure> {
     let name = (!input::is_stream(path)).then_some(path);
     let file = read_grid_within(bytes, None, name, max_memory).map_err(|error| match *error.problem {
-        GridReadProblem::Memory { needed, allowed } => {
+        FileProblem::Memory { needed, allowed } => {
             let hint = format!("for {} alone; a larger --max-memory, or a coarser lattice", input::label(path));
             Failure::memory(needed, allowed, max_memory).hint(hint)
         }
-        _ => Failure::input(error.to_string()),
+        _ => match error.hint() {
+            Some(hint) => Failure::input(error.to_string()).hint(hint),
+            None => Failure::input(error.to_string()),
+        },
     })?;
     let label = input::label(path);
     notes.extend(file.warnings.iter().map(|warning| format!("{label}: {warning}")));

@@ -11,7 +11,7 @@ use super::choices::AnyFormat;
 use super::convert::{check_close, losses, state};
 use super::exit::{Exit, Failure};
 use super::files::{self, Made};
-use super::input::{self, Input, is_soup_format, is_stream};
+use super::input::{self, Input, is_stream};
 use super::output::{Target, write_verified};
 use super::paint::{self, Arranged};
 use super::report::{OutputEntry, RunReport};
@@ -72,7 +72,7 @@ pub fn run(args: &SplitArgs, session: &Session, report: &mut RunReport) -> Resul
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     let Some(input) = inputs.pop() else { return Err(Failure::internal("nothing was read")) };
     let format = names.format(args, input.loaded.format);
-    let look = ValidateOptions { self_intersections: false, weld: is_soup_format(input.loaded.format) };
+    let look = ValidateOptions { self_intersections: false, ..input.loaded.validate_options() };
     report.inputs[0].validity = Some(validate(&input.loaded.mesh, &look, &session.progress)?);
     let pieces = report.timed(Stage::Split, |_| pieces(&input, session))?;
     let options = WriteOptions { format, ascii: args.writing.ascii, unit };
@@ -159,7 +159,7 @@ fn pieces(input: &Input, session: &Session) -> Result<Vec<Piece>, Failure> {
     let loaded = &input.loaded;
     let mesh = &loaded.mesh;
     // Shared places make one surface where the format cannot say it otherwise.
-    let welded = if is_soup_format(loaded.format) { mesh.welded() } else { mesh.clone() };
+    let welded = if loaded.format.repeats_vertices() { mesh.welded() } else { mesh.clone() };
     let shells = shells(&welded, &Operands::new([welded.triangles.len()]));
     let mut pieces = Vec::new();
     for body in bodies(&welded, &shells, &session.progress)? {

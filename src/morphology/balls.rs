@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::offset::MARGIN;
-use super::{Body, MorphologyError, Remain, around};
+use super::{Body, OffsetError, Remain, around};
 use crate::lattice::{BRICK_VOXELS, Grid, Lattice, Slot};
 use crate::mesh::edges::Union;
 use crate::mesh::{Plane, TriMesh};
@@ -113,7 +113,7 @@ impl<'a> Balls<'a> {
         own: &Grid<f32>,
         lattice: &Lattice,
         progress: &Progress,
-    ) -> Result<Grid<f32>, MorphologyError> {
+    ) -> Result<Grid<f32>, OffsetError> {
         let reach = self.radius.abs() / lattice.h;
         let options = ExactOptions { band: Band::Within(reach + MARGIN), max_memory: None };
         let far = exact(self.centres.mesh, lattice, Sign::Pseudonormal, &options, progress)?;

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::offset::MARGIN;
 use super::remains::Search;
-use super::{Balls, Body, MorphologyError, Offset, Region};
+use super::{Balls, Body, Offset, OffsetError, Region};
 use crate::contour::{ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
 use crate::lattice::{BRICK, Grid, Lattice};
 use crate::mesh::Plane;
@@ -50,7 +50,7 @@ pub fn closed(
     lattice: &Lattice,
     region: Option<&Region<'_>>,
     progress: &Progress,
-) -> Result<Closed, MorphologyError> {
+) -> Result<Closed, OffsetError> {
     let h = lattice.h;
     let own = own_distance(original, balls.radius, lattice, progress)?;
     let mut field = balls.field(&own, lattice, progress)?;
@@ -98,7 +98,7 @@ pub(super) fn own_distance(
     radius: f64,
     lattice: &Lattice,
     progress: &Progress,
-) -> Result<Grid<f32>, MorphologyError> {
+) -> Result<Grid<f32>, OffsetError> {
     let band = Band::Within(radius.abs() / lattice.h + MARGIN);
     Ok(exact(original.mesh, lattice, Sign::Pseudonormal, &ExactOptions { band, max_memory: None }, progress)?)
 }

@@ -53,7 +53,7 @@ impl Operation {
 
 /// Why there is no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum MorphologyError {
+pub enum OffsetError {
     /// Interrupted, or the deadline passed.
     #[error(transparent)]
     Stopped(#[from] Stopped),
@@ -62,7 +62,7 @@ pub enum MorphologyError {
     Distance(ExactError),
 }
 
-impl From<ExactError> for MorphologyError {
+impl From<ExactError> for OffsetError {
     fn from(error: ExactError) -> Self {
         match error {
             ExactError::Stopped(stopped) => Self::Stopped(stopped),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-use super::MorphologyError;
+use super::OffsetError;
 use super::remains::{Remain, Search};
 use crate::contour::{Contour, ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
 use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice};
@@ -130,7 +130,7 @@ pub struct Offset {
 ///
 /// # Errors
 /// Those of [`exact`], and a stop.
-pub fn offset(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) -> Result<Offset, MorphologyError> {
+pub fn offset(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) -> Result<Offset, OffsetError> {
     let field = field(body, level, lattice, progress)?;
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
     let crossing = |edge: Edge| {
@@ -155,7 +155,7 @@ pub(super) fn tangent(body: &Body<'_>, level: f64, p: DVec3, h: f64) -> Plane {
 }
 
 /// The distance less the level, in h, over the lattice.
-fn field(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) -> Result<Grid<f32>, MorphologyError> {
+fn field(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) -> Result<Grid<f32>, OffsetError> {
     let level_h = level / lattice.h;
     let reach = level_h.abs() * body.mitre.unwrap_or(1.0);
     let options = ExactOptions { band: Band::Within(reach + MARGIN), max_memory: None };

@@ -4,19 +4,22 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::backend::{self, PrismError};
 use super::frame::Frame;
+use super::nothing::refuse_scattered;
 use super::plan::{BASE_BYTES, Input};
-use super::{Backend, BackendReport, Error, StageTime, VoxelSize, prepare, solid, stages};
+use super::stages::Stages;
+use super::{LatticeError, LimitError, NothingEnclosed, StageTime, VoxelSize, sizing};
+use crate::backend::{self, Backend, BackendReport, PrismError};
 use crate::digits;
 use crate::lattice::{BRICK, Grid, Lattice, Slot};
-use crate::ldi::{Expression, MAX_VOXELS, Spans, ldis, spans};
+use crate::ldi::{Expression, MAX_VOXELS};
 use crate::mesh::TriMesh;
 use crate::orient::{OrientMode, OrientReport};
 use crate::progress::{Progress, Stage, Stopped};
 use crate::sdf::exact::{self, Band, ExactError, ExactOptions, Sign};
 use crate::sdf::{self, Levels, LevelsError, RobustOptions, characteristics, levels_memory};
-use crate::vote::{Jury, VoteReport, VoteRule, Winding, doubts, vote_near_surface};
+use crate::survey::{Cast, Soup, SoupError, Survey};
+use crate::vote::{VoteReport, VoteRule, doubts};
 
 /// Bytes per h² of surface and per triangle that are there besides the field, for each way to the sides.
 const VOTES_BYTES: [f64; 2] = [190.0, 540.0];
@@ -151,8 +154,42 @@ pub struct DistancePlan {
     pub seconds: f64,
 }
 
+/// Why there is no field.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DistanceError {
+    /// Interrupted, or the deadline passed.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// There is no triangle with an area.
+    #[error("there is no triangle with an area")]
+    Empty,
+    /// The voxel size, or the band, cannot be used with these coordinates.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// More memory would be needed than allowed.
+    #[error(transparent)]
+    Limit(#[from] LimitError),
+    /// The distance could not be found over this lattice.
+    #[error(transparent)]
+    Exact(ExactError),
+    /// There is no memory for the outlines of the levels.
+    #[error(transparent)]
+    Levels(LevelsError),
+    /// The votes find no inside.
+    #[error(transparent)]
+    Nothing(#[from] NothingEnclosed),
+    /// The graphics processor was asked for and cannot do it.
+    #[error("{reason}")]
+    Device {
+        /// One sentence: why.
+        reason: String,
+        /// What to try.
+        hint: String,
+    },
+}
+
 /// What [`distance`] would cost.
-pub fn plan_distance(input: &TriMesh, options: &DistanceOptions) -> Result<DistancePlan, Error> {
+pub fn plan_distance(input: &TriMesh, options: &DistanceOptions) -> Result<DistancePlan, DistanceError> {
     let (lattice, band) = place(input, options)?;
     Ok(plan(input, &lattice, band, options))
 }
@@ -160,16 +197,20 @@ pub fn plan_distance(input: &TriMesh, options: &DistanceOptions) -> Result<Dista
 /// The signed distance to one mesh. All its shells together are one solid.
 ///
 /// # Errors
-/// See [`Error`].
-pub fn distance(input: &TriMesh, options: &DistanceOptions, progress: &Progress) -> Result<DistanceOutcome, Error> {
+/// See [`DistanceError`].
+pub fn distance(
+    input: &TriMesh,
+    options: &DistanceOptions,
+    progress: &Progress,
+) -> Result<DistanceOutcome, DistanceError> {
     let frame = input.bounds().map_or_else(Frame::default, |bounds| Frame::around(&bounds));
-    let input = &frame.local(std::slice::from_ref(input))[0];
+    let input = &*frame.local(input);
     let (lattice, band) = place(input, options)?;
     let needed = plan(input, &lattice, band, options).memory;
     if let Some(allowed) = options.max_memory.filter(|&allowed| needed > allowed) {
-        return Err(Error::Memory { needed, allowed, voxel_that_fits: None });
+        return Err(LimitError::Memory { needed, allowed, voxel_that_fits: None }.into());
     }
-    let mut stages = stages::Stages::new(progress);
+    let mut stages = Stages::new(progress);
     let run = Run { lattice, band, options, progress };
     let mut report = DistanceReport::default();
     let field = match (options.method, options.sign) {
@@ -197,20 +238,14 @@ pub fn distance(input: &TriMesh, options: &DistanceOptions, progress: &Progress)
 }
 
 /// The lattice, grown by the band, and the band in h.
-fn place(input: &TriMesh, options: &DistanceOptions) -> Result<(Lattice, Band), Error> {
-    let mut lattice = prepare::lattice(&prepare::bounds(std::slice::from_ref(input))?, options.voxel)?;
+fn place(input: &TriMesh, options: &DistanceOptions) -> Result<(Lattice, Band), DistanceError> {
+    let mut lattice = sizing::lattice(&sizing::bounds([input]).map_err(|_| DistanceError::Empty)?, options.voxel)?;
     let Some(length) = options.band else { return Ok((lattice, Band::Full)) };
     let band = length / lattice.h;
     let longest = f64::from(lattice.dims.max_element());
     if !(band > 0.0 && longest + 2.0 * band + 2.0 < f64::from(MAX_VOXELS)) {
-        let reason = format!(
-            "a band of {} around the mesh makes a lattice of {} voxels along a side, and at most {} are possible: \
-             use a narrower band, `full`, or a larger voxel",
-            digits::number(length),
-            digits::number(longest + 2.0 * band),
-            digits::count(MAX_VOXELS as usize)
-        );
-        return Err(Error::VoxelSize { reason });
+        let along = longest + 2.0 * band;
+        return Err(LatticeError::WideBand { band: digits::number(length), along, or: " `full`," }.into());
     }
     let room = band.ceil() as i32;
     lattice.origin -= DVec3::splat(f64::from(room) * lattice.h);
@@ -225,7 +260,7 @@ fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOption
     };
     let all = lattice.dims.as_dvec3().element_product();
     let (mut memory, mut seconds) = (BASE_BYTES + exact.memory as f64, exact.seconds);
-    let surface = Input::of(std::slice::from_ref(input));
+    let surface = Input::of(&[input]);
     let (cells, triangles, voxels) = (surface.cells(lattice), input.triangles.len() as f64, exact.voxels as f64);
     if options.votes() {
         seconds += surface.votes_seconds(lattice);
@@ -256,18 +291,31 @@ fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOption
     }
 }
 
-fn refusal(error: ExactError) -> Error {
-    match error {
-        ExactError::Stopped(stopped) => stopped.into(),
-        ExactError::Empty => Error::Empty { operand: 0 },
-        other => Error::VoxelSize { reason: other.to_string() },
+impl From<ExactError> for DistanceError {
+    fn from(error: ExactError) -> Self {
+        match error {
+            ExactError::Stopped(stopped) => Self::Stopped(stopped),
+            ExactError::Empty => Self::Empty,
+            other => Self::Exact(other),
+        }
     }
 }
 
-fn no_levels(error: LevelsError) -> Error {
-    match error {
-        LevelsError::Stopped(stopped) => stopped.into(),
-        LevelsError::Memory { .. } => Error::NoRoom { reason: error.to_string() },
+impl From<LevelsError> for DistanceError {
+    fn from(error: LevelsError) -> Self {
+        match error {
+            LevelsError::Stopped(stopped) => Self::Stopped(stopped),
+            other => Self::Levels(other),
+        }
+    }
+}
+
+impl From<SoupError> for DistanceError {
+    fn from(error: SoupError) -> Self {
+        match error {
+            SoupError::Stopped(stopped) => Self::Stopped(stopped),
+            SoupError::Empty { .. } => Self::Empty,
+        }
     }
 }
 
@@ -280,22 +328,22 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<Grid<f32>, Error> {
+    fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<Grid<f32>, DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
-        exact::exact(mesh, &self.lattice, sign, &options, self.progress).map_err(refusal)
+        Ok(exact::exact(mesh, &self.lattice, sign, &options, self.progress)?)
     }
 
-    fn characteristics(&self, mesh: &TriMesh) -> Result<Grid<f32>, Error> {
+    fn characteristics(&self, mesh: &TriMesh) -> Result<Grid<f32>, DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
-        characteristics::characteristics(mesh, &self.lattice, &options, self.progress).map_err(refusal)
+        Ok(characteristics::characteristics(mesh, &self.lattice, &options, self.progress)?)
     }
 
-    fn prism(&self, mesh: &TriMesh) -> Result<(Grid<f32>, BackendReport), Error> {
+    fn prism(&self, mesh: &TriMesh) -> Result<(Grid<f32>, BackendReport), DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
         let made = backend::prism(mesh, &self.lattice, &options, self.options.backend, self.progress);
         made.map_err(|error| match error {
-            PrismError::Field(error) => refusal(error),
-            PrismError::Gpu { reason, hint } => Error::Gpu { reason, hint },
+            PrismError::Field(error) => error.into(),
+            PrismError::Gpu { reason, hint } => DistanceError::Device { reason, hint },
         })
     }
 
@@ -303,51 +351,45 @@ impl Run<'_> {
     fn of_soup(
         &self,
         input: &TriMesh,
-        stages: &mut stages::Stages<'_>,
+        stages: &mut Stages<'_>,
         report: &mut DistanceReport,
-    ) -> Result<Grid<f32>, Error> {
+    ) -> Result<Grid<f32>, DistanceError> {
         let (progress, orient, lattice) = (self.progress, self.options.orient, &self.lattice);
         stages.begin(Stage::Orient)?;
-        let mut soup = prepare::prepare(std::slice::from_ref(input), orient, progress)?;
+        let soup = Soup::of(&[input], orient, progress)?;
         stages.begin(Stage::Ldi)?;
-        let mut layers = ldis(&soup.mesh, lattice, 1, progress)?;
-        soup.turn_patches(&mut layers, orient, progress)?;
-        report.orient = soup.reports.first().cloned();
+        let mut cast = Cast::on_cpu(soup, lattice, orient, progress)?;
+        report.orient = cast.soup.reports.first().cloned();
         let expression = Expression::Operand(0);
-        let winding = Winding::new(&soup.mesh, &soup.operands, lattice, progress);
         match (self.options.method, self.options.sign) {
             (DistanceMethod::Exact, DistanceSign::Winding) => {
-                drop(layers);
+                cast.layers.clear();
                 stages.begin(Stage::Distance)?;
-                return self.exact(&soup.mesh, Sign::Winding(&winding, &expression));
+                return self.exact(&cast.soup.mesh, Sign::Winding(&cast.winding(progress), &expression));
             }
             (DistanceMethod::Exact, DistanceSign::Levels) => {
-                drop(layers);
+                cast.layers.clear();
                 stages.begin(Stage::Levels)?;
-                let levels = Levels::of(&soup.mesh, lattice, progress).map_err(no_levels)?;
+                let levels = Levels::of(&cast.soup.mesh, lattice, progress)?;
                 stages.begin(Stage::Distance)?;
-                return self.exact(&soup.mesh, Sign::Levels(&levels));
+                return self.exact(&cast.soup.mesh, Sign::Levels(&levels));
             }
             _ => {}
         }
-        let hits = solid::count(&layers);
         stages.begin(Stage::Spans)?;
-        let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, &expression));
-        let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
-        solid::refuse_scattered(&spans, hits)?;
+        let mut survey = Survey::of(cast, &expression, progress)?;
+        refuse_scattered(&survey)?;
         stages.begin(Stage::Vote)?;
-        let (operands, rule) = (&soup.operands, VoteRule::Winding);
-        let jury = Jury { spans: &spans, operands, expression: &expression, rule, winding: &winding };
-        let votes = vote_near_surface(&jury, progress)?;
+        let votes = survey.votes(VoteRule::Winding, &survey.winding(progress), progress)?;
         report.vote = Some(doubts(&votes, lattice));
         stages.begin(Stage::Distance)?;
         match self.options.method {
             DistanceMethod::Exact | DistanceMethod::Characteristics | DistanceMethod::Prism => {
-                self.exact(&soup.mesh, Sign::Votes(&votes))
+                self.exact(&survey.soup.mesh, Sign::Votes(&votes))
             }
             DistanceMethod::Robust => {
-                let near = sdf::robust(&spans, &soup.planes(lattice), &votes, &RobustOptions::default(), progress)?;
-                drop(spans);
+                let near = sdf::robust(&survey.spans, &survey.planes(), &votes, &RobustOptions::default(), progress)?;
+                survey.spans.clear();
                 Ok(self.march(&near)?)
             }
         }

@@ -3,14 +3,14 @@
 use glam::IVec3;
 use rayon::prelude::*;
 
-use super::prepare::Soup;
-use super::{Options, Precision, TriangleSource};
-use crate::contour::{Collapsed, Contour, ContourVertex, Merge, NO_TRIANGLE, collapse_same_voxel};
+use super::{Precision, SurfaceOptions, TriangleSource};
+use crate::contour::{Collapsed, Contour, ContourVertex, Crossing, Edge, Merge, NO_TRIANGLE, collapse_same_voxel};
 use crate::fit::{Facets, NOT_KEPT, Side, Sides, Surface};
-use crate::lattice::Lattice;
-use crate::ldi::Expression;
+use crate::lattice::{Grid, Lattice};
+use crate::ldi::{Expression, edge_crossing};
 use crate::mesh::{Plane, TriMesh, ValidateOptions, validate};
 use crate::progress::{Progress, Stopped};
+use crate::survey::{Soup, Survey};
 use crate::vote::{Lid, Winding};
 
 /// Before a fit, vertices of a voxel are merged where they stay this near to their planes, h. Larger ones
@@ -18,18 +18,35 @@ use crate::vote::{Lid, Winding};
 const FLAT: f64 = 0.01;
 
 /// Where the solid ends over a hole, on the lattice edge between two voxels.
-pub(super) fn lid(winding: &Winding<'_>, expression: &Expression, inside: IVec3, outside: IVec3) -> Option<Lid> {
+fn lid(winding: &Winding<'_>, expression: &Expression, inside: IVec3, outside: IVec3) -> Option<Lid> {
     // A stop shows again at the next check.
     winding.crossing(inside, outside, expression).ok().flatten()
+}
+
+/// The crossings of lattice edges for the contour: with the surface, or with a lid over a hole.
+pub(super) fn crossings<'a>(
+    survey: &'a Survey,
+    winding: &'a Winding<'_>,
+    distance: &'a Grid<f32>,
+) -> impl Fn(Edge) -> Option<Crossing> + Sync + 'a {
+    move |edge| {
+        let lower_inside = distance.get(edge.voxel) < 0.0;
+        if let Some((t, hit)) = edge_crossing(&survey.spans, edge.voxel, edge.axis as usize, lower_inside) {
+            return Some(Crossing { t, triangle: hit.triangle() });
+        }
+        let upper = edge.voxel + IVec3::AXES[edge.axis as usize];
+        let (inside, outside) = if lower_inside { (edge.voxel, upper) } else { (upper, edge.voxel) };
+        let t = lid(winding, &survey.expression, inside, outside)?.t;
+        Some(Crossing { t: if lower_inside { t } else { 1.0 - t }, triangle: NO_TRIANGLE })
+    }
 }
 
 /// Gives the contour's vertices that lie over holes a facet of their own each, numbered after the
 /// triangles of the soup: the plane of the lid there. Returns these planes.
 pub(super) fn lids(
     contour: &mut Contour,
-    (soup, lattice): (&Soup, &Lattice),
+    survey: &Survey,
     winding: &Winding<'_>,
-    expression: &Expression,
     progress: &Progress,
 ) -> Result<Vec<Plane>, Stopped> {
     let bare: Vec<usize> =
@@ -37,15 +54,15 @@ pub(super) fn lids(
     let found = bare.par_iter().map(|&v| {
         progress.check()?;
         let ContourVertex { voxel, outside, .. } = contour.vertices[v];
-        Ok(lid(winding, expression, voxel, outside).map(|lid| {
-            let at = lattice.to_model(voxel.as_dvec3().lerp(outside.as_dvec3(), lid.t));
+        Ok(lid(winding, &survey.expression, voxel, outside).map(|lid| {
+            let at = survey.lattice.to_model(voxel.as_dvec3().lerp(outside.as_dvec3(), lid.t));
             (v, Plane { normal: lid.normal, offset: lid.normal.dot(at) })
         }))
     });
     let found: Vec<Option<(usize, Plane)>> = found.collect::<Result<_, Stopped>>()?;
     let mut planes = Vec::new();
     for (v, plane) in found.into_iter().flatten() {
-        contour.vertices[v].triangle = (soup.mesh.triangles.len() + planes.len()) as u32;
+        contour.vertices[v].triangle = (survey.soup.mesh.triangles.len() + planes.len()) as u32;
         planes.push(plane);
     }
     Ok(planes)
@@ -56,7 +73,7 @@ pub(super) fn merged(
     contour: Contour,
     facets: &Facets<'_>,
     lattice: &Lattice,
-    options: &Options,
+    options: &SurfaceOptions,
     progress: &Progress,
 ) -> Result<Surface, Stopped> {
     let merge = match (options.collapse, options.fit.is_some()) {

@@ -1,7 +1,7 @@
 //! How much there is to do, and how long each stage of it may take.
 
 use super::plan::Input;
-use super::{Error, Options, StageTime, prepare};
+use super::{LatticeError, Options, StageTime, sizing};
 use crate::fit::FitOptions;
 use crate::mesh::TriMesh;
 use crate::progress::Stage;
@@ -36,10 +36,13 @@ impl Work {
     /// Of a run over `operands`; a look at sizes only, which costs next to nothing.
     ///
     /// # Errors
-    /// Those of the lattice: [`Error::Empty`], [`Error::VoxelSize`].
-    pub fn of(operands: &[TriMesh], options: &Options) -> Result<Self, Error> {
-        let lattice = prepare::lattice(&prepare::bounds(operands)?, options.voxel)?;
+    /// [`LatticeError`]: there is no lattice with this voxel.
+    pub fn of(operands: &[&TriMesh], options: &Options) -> Result<Self, LatticeError> {
         let triangles = operands.iter().map(|mesh| mesh.triangles.len()).sum();
+        let Some(bounds) = operands.iter().filter_map(|mesh| mesh.bounds()).reduce(|a, b| a.union(&b)) else {
+            return Ok(Self { triangles, cells: 0.0 });
+        };
+        let lattice = sizing::lattice(&bounds, options.voxel)?;
         Ok(Self { triangles, cells: Input::of(operands).cells(&lattice) })
     }
 
@@ -71,7 +74,7 @@ mod tests {
                 .to_vec(),
             triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
         };
-        let operands = [tetrahedron];
+        let operands = [&tetrahedron];
         let work = |n| Work::of(&operands, &Options::new(VoxelSize::Along(n))).expect("a lattice");
         let seconds = |work: Work, fit: Option<&FitOptions>| work.stages(fit).iter().map(|s| s.seconds).sum::<f64>();
         let (keeping, rebuilding) = (FitOptions::default(), FitOptions { keep: false, ..FitOptions::default() });

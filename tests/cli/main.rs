@@ -8,6 +8,8 @@ mod documents;
 mod faults;
 mod fields;
 mod files;
+#[cfg(feature = "gpu")]
+mod gpu;
 mod maps;
 mod readers;
 mod schema;

@@ -1,28 +1,13 @@
 //! Decimation: valid in, valid out; the bounds hold; features stay.
 
-use crate::common::{data, shapes};
+use crate::common::proofs::{
+    compared, decimated, number, state, stays_valid_when_decimated, stays_within_the_deviation,
+};
+use crate::common::{read, sample, shapes};
 use glam::DVec3;
-use meshwright::compare::{CompareOptions, Comparison, compare};
-use meshwright::decimate::{DecimateError, DecimateOptions, Decimated, decimate};
-use meshwright::mesh::{TriMesh, ValidateOptions, Validity, validate};
+use meshwright::decimate::{DecimateError, DecimateOptions, decimate};
+use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
-
-fn state(mesh: &TriMesh, weld: bool) -> Validity {
-    validate(mesh, &ValidateOptions { self_intersections: true, weld }, &Progress::none()).expect("not stopped")
-}
-
-fn decimated(mesh: &TriMesh, options: &DecimateOptions) -> Decimated {
-    decimate(mesh, options, &Progress::none()).expect("a valid solid")
-}
-
-fn compared(a: &TriMesh, b: &TriMesh) -> Comparison {
-    let options = CompareOptions { samples: 20_000, edge_tolerance: None };
-    compare(a, b, &options, &Progress::none()).expect("not stopped")
-}
-
-fn number(triangles: usize) -> DecimateOptions {
-    DecimateOptions { triangles: Some(triangles), ..DecimateOptions::default() }
-}
 
 /// A box whose sides are grids of squares of two triangles.
 fn gridded(n: usize, side: impl Fn(DVec3) -> DVec3) -> TriMesh {
@@ -70,57 +55,32 @@ fn a_gridded_cube_becomes_twelve_triangles_and_keeps_its_corners_to_the_last_bit
     }
 }
 
+/// Solids of every kind: smooth, with sharp edges, of several bodies, with voids and tunnels.
+fn solids() -> Vec<(&'static str, TriMesh)> {
+    let wavy = |p: DVec3| DVec3::new(p.x, p.y, p.z * (1.0 + 0.1 * (5.0 * p.x).sin() * (4.0 * p.y).cos()));
+    let mut solids = vec![
+        ("ball", ball(24)),
+        ("wavy block", gridded(24, wavy)),
+        ("torus", shapes::torus(64, 32)),
+        ("knot", shapes::knot(160, 20)),
+    ];
+    let files = ["torus.ply", "monkey_saddle.off", "hollow_ball.stl", "noisy_cube.off"];
+    solids.extend(files.map(|name| (name, read(&sample(name)))));
+    solids
+}
+
 #[test]
 fn valid_solids_stay_valid_with_their_bodies_and_tunnels_down_to_the_last_triangle() {
-    for (name, mesh) in data("clean") {
-        let before = state(&mesh, false);
-        if !before.is_valid() {
-            continue;
-        }
-        for share in [2, 10, 60] {
-            for single in [false, true] {
-                let asked = mesh.triangles.len() / share;
-                let mesh = match single {
-                    true => TriMesh {
-                        positions: mesh.positions.iter().map(|p| p.as_vec3().as_dvec3()).collect(),
-                        triangles: mesh.triangles.clone(),
-                    },
-                    false => mesh.clone(),
-                };
-                let made = decimated(&mesh, &DecimateOptions { single, ..number(asked) });
-                let after = state(&made.mesh, single);
-                assert!(after.is_valid(), "{name} to 1/{share}: {:?}", after.problems());
-                assert_eq!((after.bodies, after.genus), (before.bodies, before.genus), "{name} to 1/{share}");
-                assert_eq!(made.report.reached, after.triangles <= asked, "{name} to 1/{share}");
-                assert!(made.report.reached || share == 60, "{name} to 1/{share}: {}", after.triangles);
-                let exact = made.mesh.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p);
-                assert!(exact || !single, "{name}: coordinates are no f32");
-            }
-        }
+    for (name, mesh) in solids() {
+        stays_valid_when_decimated(name, &mesh);
     }
+    stays_valid_when_decimated("stack", &shapes::stack(0.2));
 }
 
 #[test]
 fn the_surface_stays_within_the_deviation_both_ways() {
-    let mut meshes: Vec<(String, TriMesh)> = data("clean")
-        .into_iter()
-        .filter(|(_, mesh)| mesh.triangles.len() < 9000 && state(mesh, false).is_valid())
-        .collect();
-    meshes.push(("ball".into(), ball(24)));
-    meshes.push(("torus".into(), shapes::torus(64, 32)));
-    for (name, mesh) in meshes {
-        let diagonal = mesh.bounds().expect("triangles").diagonal();
-        let mut last = mesh.triangles.len();
-        for share in [1e-4, 1e-3, 1e-2] {
-            let options = DecimateOptions { max_deviation: Some(share * diagonal), ..DecimateOptions::default() };
-            let made = decimated(&mesh, &options);
-            let moved = compared(&mesh, &made.mesh).symmetric.expect("areas").max;
-            assert!(moved <= share * diagonal, "{name}: moved by {} of {share}", moved / diagonal);
-            assert!(made.mesh.triangles.len() <= last, "{name}: more triangles for more room");
-            assert!(state(&made.mesh, false).is_valid(), "{name}");
-            last = made.mesh.triangles.len();
-        }
-        assert!(last < mesh.triangles.len() * 9 / 10, "{name}: {last} triangles left");
+    for (name, mesh) in solids() {
+        stays_within_the_deviation(name, &mesh);
     }
 }
 

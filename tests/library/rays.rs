@@ -1,32 +1,20 @@
 //! Every closed mesh gives balanced rays, in all 13 directions.
 
-use crate::common::{data, shapes, stages};
+use crate::common::proofs::{assert_balanced, balances};
+use crate::common::{read, sample, shapes};
 use glam::{DMat3, DVec3};
-use meshwright::ldi::{Balance, Layers, Operands, balance, ldis};
-use meshwright::mesh::TriMesh;
-use meshwright::progress::Progress;
 use proptest::prelude::*;
 
-fn balances(mesh: &TriMesh, resolution: u32, factor: u32) -> Vec<Balance> {
-    let layers = ldis(mesh, &stages::lattice_of(mesh, resolution), factor, &Progress::none()).expect("not stopped");
-    let operands = Operands::new([mesh.triangles.len()]);
-    layers.iter().map(|layers: &Layers| balance(layers, &operands)).collect()
-}
-
-fn assert_balanced(name: &str, mesh: &TriMesh, resolution: u32, factor: u32) {
-    for (direction, balance) in balances(mesh, resolution, factor).into_iter().enumerate() {
-        assert!(balance.occupied > 0, "{name} at {resolution}: direction {direction} hits nothing");
-        assert_eq!(balance.unbalanced, 0, "{name} at {resolution}, factor {factor}, direction {direction}");
-    }
-}
-
 #[test]
-fn clean_real_meshes_balance() {
-    for (name, mesh) in data("clean") {
-        for resolution in [64, 256, 1024] {
-            assert_balanced(&name, &mesh, resolution, 1);
+fn hard_meshes_and_files_balance() {
+    let mut meshes = shapes::hard();
+    meshes.extend([("knot", shapes::knot(96, 16)), ("gear", shapes::gear(24)), ("stack", shapes::stack(0.1))]);
+    meshes.extend(["torus.ply", "monkey_saddle.off", "hollow_ball.stl"].map(|name| (name, read(&sample(name)))));
+    for (name, mesh) in meshes {
+        for resolution in [64, 256] {
+            assert_balanced(name, &mesh, resolution, 1);
         }
-        assert_balanced(&name, &mesh, 64, 2);
+        assert_balanced(name, &mesh, 64, 2);
     }
 }
 

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick};
 use crate::mesh::edges::Union;
 use crate::morphology::closed::{own_distance, unchanged};
-use crate::morphology::{Balls, Body, MorphologyError, around};
+use crate::morphology::{Balls, Body, OffsetError, around};
 use crate::progress::Progress;
 use crate::vote::voxel_in_brick;
 
@@ -42,7 +42,7 @@ impl Fill {
         balls: &Balls<'_>,
         lattice: &Lattice,
         progress: &Progress,
-    ) -> Result<Self, MorphologyError> {
+    ) -> Result<Self, OffsetError> {
         let own = own_distance(original, balls.radius, lattice, progress)?;
         let closing = balls.field(&own, lattice, progress)?;
         let least = (unchanged(balls.radius, lattice.h) / lattice.h) as f32;

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::closed::{BESIDE, samples};
-use super::{Balls, Body, Centres, MorphologyError, corners};
+use super::{Balls, Body, Centres, OffsetError, corners};
 use crate::lattice::{Grid, Lattice};
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::Progress;
@@ -128,7 +128,7 @@ pub fn canals(
     (balls, centres): (&Balls<'_>, &Centres),
     lattice: &Lattice,
     progress: &Progress,
-) -> Result<Canals, MorphologyError> {
+) -> Result<Canals, OffsetError> {
     let fill = Fill::new(original, balls, lattice, progress)?;
     let shells = [&topology::shells(original.mesh), &centres.spaces];
     let parts = fill.parts();
@@ -139,7 +139,7 @@ pub fn canals(
         // Where a ball passes halfway in all the same, only the edges of a wide place are rounded.
         Ok(canal.filter(|canal| canal.diameter < 2.0 * balls.radius))
     };
-    let judged: Vec<Option<Canal>> = parts.par_iter().map(judge).collect::<Result<_, MorphologyError>>()?;
+    let judged: Vec<Option<Canal>> = parts.par_iter().map(judge).collect::<Result<_, OffsetError>>()?;
     let roundings = judged.iter().filter(|canal| canal.is_none()).count();
     let mut found: Vec<(Canal, &Part)> =
         judged.into_iter().zip(&parts).filter_map(|(canal, part)| Some((canal?, part))).collect();

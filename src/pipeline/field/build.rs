@@ -3,13 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use super::OperandReport;
 use super::sources::Sources;
+use super::{FieldError, OperandReport};
 use crate::field::language::{self, BuildError, Node, Reading, Site, Value};
 use crate::field::{Field, MeshField, Sampled, Shared};
 use crate::mesh::{Bounds, TriMesh, ValidateOptions, validate};
 use crate::pipeline::{
-    DistanceMethod, DistanceOptions, DistanceSign, Error, Options, TriangleSource, VoxelSize, distance, prepare, repair,
+    DistanceMethod, DistanceOptions, DistanceSign, Operand, Options, TriangleSource, VoxelSize, distance, repair,
+    sizing,
 };
 use crate::progress::Progress;
 use crate::sdf::exact::PointSign;
@@ -18,9 +19,9 @@ use crate::sdf::exact::PointSign;
 const KNOWN: f64 = 0.1;
 
 /// What a name of an expression stands for.
-pub enum Operand {
+pub enum FieldOperand<'a> {
     /// A mesh, which may be broken.
-    Mesh(TriMesh),
+    Mesh(Operand<'a>),
     /// A field from a file.
     Grid(Arc<Sampled>),
 }
@@ -36,7 +37,7 @@ pub struct Built {
     pub(super) sources: Sources,
 }
 
-impl Operand {
+impl FieldOperand<'_> {
     /// Bytes of memory that its lattice takes; none for a mesh.
     pub fn memory(&self) -> u64 {
         match self {
@@ -48,7 +49,7 @@ impl Operand {
     /// The box around it, model units.
     pub fn bounds(&self) -> Option<Bounds> {
         match self {
-            Self::Mesh(mesh) => mesh.bounds(),
+            Self::Mesh(operand) => operand.mesh.bounds(),
             Self::Grid(grid) => grid.extent().bounds(),
         }
     }
@@ -56,7 +57,7 @@ impl Operand {
 
 /// Makes fields of trees over the same operands; what it has made of an operand it keeps.
 pub struct FieldBuilder<'a> {
-    operands: &'a [Operand],
+    operands: &'a [FieldOperand<'a>],
     options: &'a Options,
     progress: &'a Progress,
     /// The operands that are valid solids.
@@ -68,23 +69,23 @@ pub struct FieldBuilder<'a> {
 
 impl<'a> FieldBuilder<'a> {
     /// Ready to make fields of `operands`. A mesh that is no valid solid will be repaired first, as `options` say.
-    pub fn new(operands: &'a [Operand], options: &'a Options, progress: &'a Progress) -> Self {
+    pub fn new(operands: &'a [FieldOperand<'a>], options: &'a Options, progress: &'a Progress) -> Self {
         Self { operands, options, progress, valid: BTreeSet::new(), made: BTreeMap::new(), sources: Sources::default() }
     }
 
     /// The field that `tree` says.
     ///
     /// # Errors
-    /// See [`Error`].
-    pub fn build(&mut self, tree: &Node<Value>) -> Result<Built, Error> {
+    /// See [`FieldError`].
+    pub fn build(&mut self, tree: &Node<Value>) -> Result<Built, FieldError> {
         let mut read = language::Operands::new();
         for (operand, reading) in tree.readings() {
             self.progress.check()?;
             read.insert((operand, reading), self.read(operand, reading)?);
         }
         let voxel = |h: Option<f64>| h.map_or(self.options.voxel, VoxelSize::Length);
-        let lattice = |bounds: &Bounds, h| prepare::lattice(bounds, voxel(h)).map_err(|error| error.to_string());
-        let parts = self.operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
+        let lattice = |bounds: &Bounds, h| sizing::lattice(bounds, voxel(h)).map_err(|error| error.to_string());
+        let parts = self.operands.iter().filter_map(FieldOperand::bounds).reduce(|a, b| a.union(&b));
         let max_memory = self.options.max_memory;
         let mut site = Site { parts, lattice: &lattice, max_memory, progress: self.progress };
         let field = language::build(tree, &read, &mut site)?;
@@ -92,43 +93,42 @@ impl<'a> FieldBuilder<'a> {
         Ok(Built { field, parts: site.parts, operands, sources: self.sources.clone() })
     }
 
-    fn read(&mut self, operand: usize, reading: Reading) -> Result<Shared, Error> {
-        let given = self.operands.len();
-        let known = self.operands.get(operand).ok_or(Error::MissingOperand { operand, given })?;
-        match (known, reading) {
-            (Operand::Grid(grid), _) => Ok(self.remember(operand, "grid", grid.clone())),
-            (Operand::Mesh(mesh), Reading::Usual) => self.usual(operand, mesh),
-            (Operand::Mesh(mesh), Reading::Exact) => Ok(self.exact(operand, mesh)),
-            (Operand::Mesh(mesh), Reading::Robust) => {
-                self.sampled((operand, "robust"), mesh, DistanceMethod::Robust, DistanceSign::Votes)
+    fn read(&mut self, operand: usize, reading: Reading) -> Result<Shared, FieldError> {
+        let given = self.operands.get(operand);
+        let given = given.ok_or_else(|| BuildError::Incomplete { name: format!("operand {operand}") })?;
+        match (given, reading) {
+            (FieldOperand::Grid(grid), _) => Ok(self.remember(operand, "grid", grid.clone())),
+            (FieldOperand::Mesh(given), Reading::Usual) => self.usual(operand, *given),
+            (FieldOperand::Mesh(given), Reading::Exact) => Ok(self.exact(operand, given.mesh)),
+            (FieldOperand::Mesh(given), Reading::Robust) => {
+                self.sampled((operand, "robust"), given.mesh, DistanceMethod::Robust, DistanceSign::Votes)
             }
-            (Operand::Mesh(mesh), Reading::Levels) => {
-                self.sampled((operand, "levels"), mesh, DistanceMethod::Exact, DistanceSign::Levels)
+            (FieldOperand::Mesh(given), Reading::Levels) => {
+                self.sampled((operand, "levels"), given.mesh, DistanceMethod::Exact, DistanceSign::Levels)
             }
         }
     }
 
     /// A mesh by its exact distance, repaired first where it is no solid.
-    fn usual(&mut self, operand: usize, mesh: &TriMesh) -> Result<Shared, Error> {
+    fn usual(&mut self, operand: usize, given: Operand<'_>) -> Result<Shared, FieldError> {
         if let Some(made) = self.made.get(&(operand, "repaired")) {
             return Ok(made.clone());
         }
         if self.valid.contains(&operand) {
-            return Ok(self.exact(operand, mesh));
+            return Ok(self.exact(operand, given.mesh));
         }
         let options = ValidateOptions { self_intersections: true, weld: true };
-        if validate(mesh, &options, self.progress)?.is_valid() {
+        if validate(given.mesh, &options, self.progress)?.is_valid() {
             self.valid.insert(operand);
-            return Ok(self.exact(operand, mesh));
+            return Ok(self.exact(operand, given.mesh));
         }
-        let classes = self.options.classes.get(operand).cloned().into_iter().collect();
-        let outcome = repair(mesh, &Options { classes, ..self.options.clone() }, self.progress)?;
+        let outcome = repair(given, self.options, self.progress)?;
         let origins = outcome.sources.iter().map(|source| match *source {
             TriangleSource::Operand { triangle, .. } => TriangleSource::Operand { operand: operand as u32, triangle },
             TriangleSource::Closed => TriangleSource::Closed,
         });
-        let source = self.sources.add(&outcome.mesh, origins);
-        let field = MeshField::new(&outcome.mesh, PointSign::Pseudonormal, source);
+        let source = self.sources.add(&outcome.solid, origins);
+        let field = MeshField::new(&outcome.solid, PointSign::Pseudonormal, source);
         Ok(self.remember(operand, "repaired", Arc::new(field)))
     }
 
@@ -139,7 +139,7 @@ impl<'a> FieldBuilder<'a> {
         mesh: &TriMesh,
         method: DistanceMethod,
         sign: DistanceSign,
-    ) -> Result<Shared, Error> {
+    ) -> Result<Shared, FieldError> {
         if let Some(made) = self.made.get(&(operand, name)) {
             return Ok(made.clone());
         }
@@ -174,23 +174,5 @@ impl<'a> FieldBuilder<'a> {
     fn remember(&mut self, operand: usize, made: &'static str, field: Shared) -> Shared {
         self.made.insert((operand, made), field.clone());
         field
-    }
-}
-
-impl From<BuildError> for Error {
-    fn from(error: BuildError) -> Self {
-        let reason = error.to_string();
-        match error {
-            BuildError::Stopped(stopped) => stopped.into(),
-            BuildError::Fill(error) => super::not_filled(error),
-            BuildError::Filter(error) => Self::Filter(error),
-            BuildError::Ramp { .. } | BuildError::Lattice { .. } => Self::VoxelSize { reason },
-            BuildError::Endless
-            | BuildError::Nothing
-            | BuildError::NoSize
-            | BuildError::NoRadius
-            | BuildError::NoBox
-            | BuildError::Incomplete { .. } => Self::NothingEnclosed { reason },
-        }
     }
 }

@@ -7,21 +7,23 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-pub use build::{Built, FieldBuilder, Operand};
+pub use build::{Built, FieldBuilder, FieldOperand};
 
 use super::distance::DistanceOutcome;
 use super::frame::Frame;
-use super::morphology::volume;
+use super::offsets::volume;
+use super::stages::Stages;
 use super::{
-    DistanceReport, Error, Options, Outcome, Report, TriangleCounts, TriangleSource, VoxelSize, prepare, refine, stages,
+    BooleanError, DistanceError, DistanceReport, Draft, LatticeError, LimitError, Options, Outcome, Report,
+    TriangleCounts, TriangleSource, VoxelSize, refine, sizing,
 };
 use crate::digits;
 use crate::field::language::{self, BuildError};
 use crate::field::{Field, FillError, FillOptions, LevelError, Shared, fill, level};
 use crate::fit::{Facets, fit};
 use crate::ldi::{Evidence, MAX_VOXELS};
-use crate::mesh::Bounds;
-use crate::progress::{Progress, Stage};
+use crate::mesh::{Bounds, NotSolid, SolidError};
+use crate::progress::{Progress, Stage, Stopped};
 use crate::sdf::exact::Band;
 
 /// A lattice that cuts a shape off grows by this part of the shape's extent.
@@ -33,6 +35,35 @@ const NEAR: f64 = 1e-3;
 const FAR: f64 = 0.1;
 /// A gradient shorter than this says nothing about how far the level is.
 const FLAT: f64 = 0.05;
+
+/// Why there is no field, or no surface of it.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FieldError {
+    /// Interrupted, or the deadline passed.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// The voxel size, or the band, cannot be used with these coordinates.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// More memory would be needed than allowed.
+    #[error(transparent)]
+    Limit(#[from] LimitError),
+    /// No voxel is inside.
+    #[error("the field is nowhere negative on the lattice: nothing is inside, or it is thinner than a voxel")]
+    NothingOnLattice,
+    /// A function of the expression cannot be made.
+    #[error(transparent)]
+    Build(BuildError),
+    /// An operand could not be repaired.
+    #[error(transparent)]
+    Repair(BooleanError),
+    /// The distance to an operand could not be found.
+    #[error(transparent)]
+    Distance(DistanceError),
+    /// What was made is not a valid solid. The fit sees to it that it is; without one, it may not be.
+    #[error(transparent)]
+    NotSolid(Box<NotSolid>),
+}
 
 /// What a field was made of, and what became of it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -59,19 +90,23 @@ pub struct OperandReport {
 /// The surface where the field is zero.
 ///
 /// # Errors
-/// See [`Error`]; [`Error::NothingEnclosed`] also for shapes without an end.
-pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> Result<(Outcome, FieldReport), Error> {
-    let mut stages = stages::Stages::new(progress);
+/// See [`FieldError`].
+pub fn field_surface(
+    built: &Built,
+    options: &Options,
+    progress: &Progress,
+) -> Result<(Outcome, FieldReport), FieldError> {
+    let mut stages = Stages::new(progress);
     stages.begin(Stage::Field)?;
     let extent = language::shape_extent(&built.field)?;
     let h = field_spacing(built, options)?;
-    let frame = Frame::of_box(&extent, options);
+    let frame = Frame::of_box(&extent, &options.surface());
     let mut extent = frame.local_bounds(&extent);
     let field = &*frame.local_field(&built.field);
     let mut tries = 0;
     let (level, lattice) = loop {
-        let lattice = prepare::lattice(&extent, VoxelSize::Length(h))?;
-        let level = level(field, &lattice, options.max_memory, progress).map_err(no_level)?;
+        let lattice = sizing::lattice(&extent, VoxelSize::Length(h))?;
+        let level = level(field, &lattice, options.max_memory, progress)?;
         if !level.cut_off {
             break (level, lattice);
         }
@@ -83,8 +118,7 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         extent = Bounds { min: extent.min - room, max: extent.max + room };
     };
     if level.contour.mesh.triangles.is_empty() {
-        let reason = "the field is nowhere negative on the lattice: nothing is inside, or it is thinner than a voxel";
-        return Err(Error::NothingEnclosed { reason: reason.into() });
+        return Err(FieldError::NothingOnLattice);
     }
     let mut contour = level.contour;
     let sources = &built.sources;
@@ -93,10 +127,10 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         vertex.triangle = facet.and_then(|facet| sources.number(facet)).unwrap_or(own);
     });
     let wanted = |p: DVec3| off(field, p, lattice.h);
-    let source = &frame.local(std::slice::from_ref(&sources.mesh))[0];
+    let source = &*frame.local(&sources.mesh);
     let facets = Facets::new(source, level.planes).with_wanted(&wanted);
     stages.begin(Stage::Collapse)?;
-    let mut surface = refine::merged(contour, &facets, &lattice, options, progress)?;
+    let mut surface = refine::merged(contour, &facets, &lattice, &options.surface(), progress)?;
     let mut fitted = None;
     if let Some(options) = options.fit {
         stages.begin(Stage::Fit)?;
@@ -118,7 +152,8 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         ..Report::default()
     };
     let account = FieldReport { operands: built.operands.clone(), made, volume: volume(&surface.mesh) };
-    Ok((frame.global(Outcome { mesh: surface.mesh, sources: origins, lattice, report }), account))
+    let draft = Draft { mesh: surface.mesh, sources: origins, lattice, report };
+    Ok((draft.global(&frame).judged(&[], progress)?, account))
 }
 
 /// How far a point is from the level, model units. Gradients cost more than values, and mostly the value tells enough.
@@ -146,18 +181,18 @@ pub enum FieldBand {
 /// The field over a lattice around the shape, or around the operands and bodies where the field is no shape.
 ///
 /// # Errors
-/// See [`Error`].
+/// See [`FieldError`].
 pub fn field_grid(
     built: &Built,
     band: FieldBand,
     options: &Options,
     progress: &Progress,
-) -> Result<DistanceOutcome, Error> {
-    let mut stages = stages::Stages::new(progress);
+) -> Result<DistanceOutcome, FieldError> {
+    let mut stages = Stages::new(progress);
     stages.begin(Stage::Field)?;
     let extent = built.field.extent().bounds().or(built.parts).ok_or(BuildError::Endless)?;
-    let frame = Frame::of_box(&extent, options);
-    let mut lattice = prepare::lattice(&frame.local_bounds(&extent), options.voxel)?;
+    let frame = Frame::of_box(&extent, &options.surface());
+    let mut lattice = sizing::lattice(&frame.local_bounds(&extent), options.voxel)?;
     let h = lattice.h;
     let band = match band {
         FieldBand::Length(length) => Some(length),
@@ -167,19 +202,13 @@ pub fn field_grid(
     let room = (band.unwrap_or(0.0) / h).ceil();
     let most = f64::from(lattice.dims.max_element()) + 2.0 * room;
     if most.is_nan() || most >= f64::from(MAX_VOXELS) {
-        let reason = format!(
-            "a band of {} voxels makes a lattice of {} along a side, and at most {} are possible: \
-             use a narrower band, or a larger voxel",
-            digits::number(room),
-            digits::number(most),
-            digits::count(MAX_VOXELS as usize)
-        );
-        return Err(Error::VoxelSize { reason });
+        let band = format!("{} voxels", digits::number(room));
+        return Err(LatticeError::WideBand { band, along: most, or: "" }.into());
     }
     lattice.origin -= room * h;
     lattice.dims += 2 * IVec3::splat(room as i32);
     let wanted = FillOptions { band, max_memory: options.max_memory };
-    let mut grid = fill(&*frame.local_field(&built.field), &lattice, &wanted, progress).map_err(not_filled)?;
+    let mut grid = fill(&*frame.local_field(&built.field), &lattice, &wanted, progress)?;
     lattice = frame.global_lattice(lattice);
     // The outcome holds distances in h.
     let per_h = (1.0 / h) as f32;
@@ -204,20 +233,63 @@ pub fn field_values(field: &Shared, points: &[DVec3]) -> Vec<f64> {
 ///
 /// # Errors
 /// Those of [`field_surface`].
-pub fn field_spacing(built: &Built, options: &Options) -> Result<f64, Error> {
-    Ok(prepare::lattice(&language::shape_extent(&built.field)?, options.voxel)?.h)
+pub fn field_spacing(built: &Built, options: &Options) -> Result<f64, FieldError> {
+    Ok(sizing::lattice(&language::shape_extent(&built.field)?, options.voxel)?.h)
 }
 
-fn not_filled(error: FillError) -> Error {
-    match error {
-        FillError::Stopped(stopped) => stopped.into(),
-        FillError::Memory { needed, allowed } => Error::Memory { needed, allowed, voxel_that_fits: None },
+impl From<FillError> for FieldError {
+    fn from(error: FillError) -> Self {
+        match error {
+            FillError::Stopped(stopped) => Self::Stopped(stopped),
+            FillError::Memory { needed, allowed } => {
+                LimitError::Memory { needed, allowed, voxel_that_fits: None }.into()
+            }
+        }
     }
 }
 
-fn no_level(error: LevelError) -> Error {
-    match error {
-        LevelError::Fill(error) => not_filled(error),
-        LevelError::Stopped(stopped) => stopped.into(),
+impl From<BuildError> for FieldError {
+    fn from(error: BuildError) -> Self {
+        match error {
+            BuildError::Stopped(stopped) => Self::Stopped(stopped),
+            BuildError::Fill(error) => error.into(),
+            other => Self::Build(other),
+        }
+    }
+}
+
+impl From<LevelError> for FieldError {
+    fn from(error: LevelError) -> Self {
+        match error {
+            LevelError::Fill(error) => error.into(),
+            LevelError::Stopped(stopped) => Self::Stopped(stopped),
+        }
+    }
+}
+
+impl From<BooleanError> for FieldError {
+    fn from(error: BooleanError) -> Self {
+        match error {
+            BooleanError::Stopped(stopped) => Self::Stopped(stopped),
+            other => Self::Repair(other),
+        }
+    }
+}
+
+impl From<DistanceError> for FieldError {
+    fn from(error: DistanceError) -> Self {
+        match error {
+            DistanceError::Stopped(stopped) => Self::Stopped(stopped),
+            other => Self::Distance(other),
+        }
+    }
+}
+
+impl From<SolidError> for FieldError {
+    fn from(error: SolidError) -> Self {
+        match error {
+            SolidError::Stopped(stopped) => Self::Stopped(stopped),
+            SolidError::NotSolid(what) => Self::NotSolid(what),
+        }
     }
 }

@@ -8,10 +8,12 @@ use meshwright::lattice::{Grid, Lattice};
 use meshwright::mesh::TriMesh;
 use meshwright::progress::{Progress, Stopped};
 use meshwright::sdf::characteristics::{characteristics, cost};
-use meshwright::sdf::exact::{Band, ExactError, ExactOptions, Sign, exact};
+use meshwright::sdf::exact::{Band, ExactError, ExactOptions};
 use proptest::prelude::*;
 
-use super::shapes::{ball, closed, lattice, turned};
+use crate::common::exact::{check_characteristics, lattice};
+use crate::common::shapes::{ball, gear, hard, knot, torus, turned};
+use crate::common::{read, sample};
 
 fn options(band: Band) -> ExactOptions {
     ExactOptions { band, max_memory: None }
@@ -21,49 +23,23 @@ fn field(mesh: &TriMesh, lattice: &Lattice, band: Band) -> Grid<f32> {
     characteristics(mesh, lattice, &options(band), &Progress::none()).expect("a field")
 }
 
-/// Compares all voxels of all bricks of the lattice with the exact field; returns how many are in the band.
-fn compare(name: &str, mesh: &TriMesh, lattice: &Lattice, band: Band) -> usize {
-    let grid = field(mesh, lattice, band);
-    let truth = exact(mesh, lattice, Sign::Pseudonormal, &options(band), &Progress::none()).expect("a field");
-    assert_eq!((grid.inside, grid.outside), (truth.inside, truth.outside), "{name}");
-    let (end, width) = ((lattice.dims + 7) / 8 * 8, truth.outside);
-    let mut within = 0;
-    for n in 0..end.element_product() {
-        let v = IVec3::new(n % end.x, n / end.x % end.y, n / (end.x * end.y));
-        let (got, wanted) = (grid.get(v), truth.get(v));
-        assert!((got - wanted).abs() <= 1e-4, "{name}: {got} instead of {wanted} at {v}");
-        assert!((got < 0.0) == (wanted < 0.0) || wanted.abs() < 1e-6, "{name}: {got} instead of {wanted} at {v}");
-        within += usize::from(wanted.abs() < width);
-    }
-    // A brick may be stored by one of them only for a voxel at the very end of the band.
-    for (a, b) in [(&grid, &truth), (&truth, &grid)] {
-        for (&brick, values) in a.bricks.active().iter().zip(&a.values) {
-            let near = values.iter().map(|value| value.abs()).fold(f32::INFINITY, f32::min);
-            let both = b.bricks.active().binary_search_by_key(&(brick.z, brick.y, brick.x), |b| (b.z, b.y, b.x));
-            assert!(both.is_ok() || near > width - 1e-4, "{name}: brick {brick}, {near}");
-        }
-    }
-    within
-}
-
 #[test]
 fn hard_meshes_have_the_exact_field() {
-    for (name, mesh) in closed() {
-        let within = compare(name, &mesh, &lattice(&mesh, 1.0 / 30.0, 4), Band::Within(4.0));
+    for (name, mesh) in hard() {
+        let within = check_characteristics(name, &mesh, &lattice(&mesh, 1.0 / 30.0, 4), Band::Within(4.0));
         assert!(within > 1000, "{name}: {within}");
     }
 }
 
 #[test]
-fn real_meshes_have_the_exact_field() {
-    let clean = crate::common::data_folder().join("clean");
-    let saddle = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("testdata/monkey_saddle.off");
-    let knight = clean.join("decimated-knight.off");
-    for (path, band) in [(saddle, 6.4), (clean.join("fandisk.off"), 6.4), (knight, 3.0)] {
-        let mesh = crate::common::read(&path);
+fn parts_and_files_have_the_exact_field() {
+    let saddle = read(&sample("monkey_saddle.off"));
+    for (name, mesh, band) in
+        [("saddle", saddle, 6.4), ("knot", knot(96, 16), 6.4), ("gear", turned(gear(24), 0.3), 3.0)]
+    {
         let h = mesh.bounds().expect("triangles").size().max_element() / 64.0;
-        let within = compare(&path.display().to_string(), &mesh, &lattice(&mesh, h, 7), Band::Within(band));
-        assert!(within > 10_000, "{}: {within}", path.display());
+        let within = check_characteristics(name, &mesh, &lattice(&mesh, h, 7), Band::Within(band));
+        assert!(within > 10_000, "{name}: {within}");
     }
 }
 
@@ -72,21 +48,22 @@ fn bands_of_any_width_and_none() {
     let mesh = ball(3, |p| 0.5 + 0.1 * (7.0 * p.x).sin());
     let around = lattice(&mesh, 1.0 / 20.0, 5);
     let widths = [0.01, 1.0, 2.5, 9.0, 20.0, 400.0];
-    let counts: Vec<usize> = widths.iter().map(|&h| compare("ball", &mesh, &around, Band::Within(h))).collect();
+    let counts: Vec<usize> =
+        widths.iter().map(|&h| check_characteristics("ball", &mesh, &around, Band::Within(h))).collect();
     assert!(counts.is_sorted() && counts[0] > 0, "{counts:?}");
-    let all = compare("ball", &mesh, &around, Band::Full);
+    let all = check_characteristics("ball", &mesh, &around, Band::Full);
     assert_eq!(all, counts[5]);
 }
 
 #[test]
 fn a_lattice_that_cuts_the_body_or_misses_it() {
-    let mesh = turned(crate::common::shapes::torus(24, 12), 0.4);
+    let mesh = turned(torus(24, 12), 0.4);
     let low = DVec3::new(0.4, -0.3, -0.2);
     for (low, band) in
         [(low, 3.0), (DVec3::new(0.95, -0.05, -0.1), 1.0), (DVec3::splat(2.0), 8.0), (DVec3::splat(9.0), 2.0)]
     {
         let small = Lattice { origin: low, h: 1.0 / 60.0, dims: IVec3::new(41, 33, 20) };
-        compare("torus", &mesh, &small, Band::Within(band));
+        check_characteristics("torus", &mesh, &small, Band::Within(band));
     }
     let inside = Lattice { origin: DVec3::splat(-0.2), h: 0.01, dims: IVec3::splat(40) };
     let grid = field(&ball(2, |_| 1.0), &inside, Band::Within(2.0));
@@ -113,13 +90,13 @@ fn nearly_flat_edges_leave_no_gap() {
         mesh.positions.iter_mut().for_each(|p| *p = tilt(*p));
         // Voxels lie on the ridges x = 0 and y = 0.
         let around = Lattice { origin: DVec3::splat(-10.0), h: 0.5, dims: IVec3::splat(41) };
-        compare(&format!("bend of {bend}"), &mesh, &around, Band::Within(12.0));
+        check_characteristics(&format!("bend of {bend}"), &mesh, &around, Band::Within(12.0));
     }
 }
 
 #[test]
 fn threads_do_not_change_a_bit() {
-    let mesh = closed().swap_remove(3).1;
+    let mesh = hard().swap_remove(3).1;
     let around = lattice(&mesh, 1.0 / 40.0, 5);
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
@@ -166,7 +143,7 @@ proptest! {
         let radii = radii.iter().cycle().skip(1);
         mesh.positions.iter_mut().zip(radii).for_each(|(p, radius)| *p *= *radius);
         let mesh = turned(mesh, angle);
-        compare("star", &mesh, &lattice(&mesh, h, 2), Band::Within(width));
+        check_characteristics("star", &mesh, &lattice(&mesh, h, 2), Band::Within(width));
     }
 }
 
@@ -185,5 +162,5 @@ fn nearly_flat_ridges_of_a_thin_plate() {
     }
     let mesh = TriMesh { positions, triangles };
     let around = Lattice { origin: DVec3::splat(-10.0), h: 0.5, dims: IVec3::splat(41) };
-    compare("plate", &mesh, &around, Band::Within(12.0));
+    check_characteristics("plate", &mesh, &around, Band::Within(12.0));
 }

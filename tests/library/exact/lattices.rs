@@ -4,14 +4,14 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use glam::{DVec3, IVec3};
-use meshwright::lattice::{Grid, Lattice, Slot};
+use meshwright::lattice::{Grid, Lattice};
 use meshwright::mesh::TriMesh;
 use meshwright::progress::{Progress, Stopped};
 use meshwright::sdf::exact::{Band, ExactDistance, ExactError, ExactOptions, PointSign, Sign, cost, exact};
 use proptest::prelude::*;
-use rayon::prelude::*;
 
-use super::shapes::{ball, closed, lattice, turned, voxel, winding};
+use crate::common::exact::{check_lattice, lattice, winding};
+use crate::common::shapes::{ball, gear, hard, knot, stack, torus, turned};
 
 fn options(band: Band) -> ExactOptions {
     ExactOptions { band, max_memory: None }
@@ -21,43 +21,10 @@ fn field(mesh: &TriMesh, lattice: &Lattice, band: Band) -> Grid<f32> {
     exact(mesh, lattice, Sign::Pseudonormal, &options(band), &Progress::none()).expect("a field")
 }
 
-/// Checks every voxel of every brick of the lattice against the point query; returns how many are in the band.
-fn check(name: &str, mesh: &TriMesh, lattice: &Lattice, band: Band) -> usize {
-    let grid = field(mesh, lattice, band);
-    let point = ExactDistance::of(mesh, PointSign::Pseudonormal);
-    let width = if let Band::Within(width) = band { width.max(1.0) } else { f64::INFINITY };
-    let counts = (lattice.dims + 7) / 8;
-    let bricks = (0..counts.element_product()).into_par_iter();
-    bricks
-        .map(|n| {
-            let brick = IVec3::new(n % counts.x, n / counts.x % counts.y, n / (counts.x * counts.y));
-            let slot = grid.bricks.slot(brick);
-            let mut within = 0;
-            for n in 0..512 {
-                let v = voxel(brick, n);
-                let nearest = point.at(lattice.to_model(v.as_dvec3())).expect("triangles");
-                let truth = nearest.signed / lattice.h;
-                if truth.abs() < width - 1e-4 {
-                    let Slot::Active(n_brick) = slot else { panic!("{name}: brick of {v} is not stored") };
-                    let got = f64::from(grid.values[n_brick as usize][n]);
-                    assert!((got.abs() - truth.abs()).abs() <= 1e-4, "{name}: {got} instead of {truth} at {v}");
-                    within += 1;
-                }
-                let got = grid.get(v);
-                if truth.abs() > width + 1e-4 {
-                    assert_eq!(f64::from(got.abs()), f64::from(width as f32), "{name}: {truth} at {v}");
-                }
-                assert!((got < 0.0) == (truth < 0.0) || truth.abs() < 1e-6, "{name}: {got} instead of {truth} at {v}");
-            }
-            within
-        })
-        .sum()
-}
-
 #[test]
 fn all_voxels_of_hard_meshes_are_as_the_points() {
-    for (name, mesh) in closed() {
-        let within = check(name, &mesh, &lattice(&mesh, 1.0 / 30.0, 4), Band::Within(4.0));
+    for (name, mesh) in hard() {
+        let within = check_lattice(name, &mesh, &lattice(&mesh, 1.0 / 30.0, 4), Band::Within(4.0));
         assert!(within > 1000, "{name}: {within}");
     }
 }
@@ -67,21 +34,21 @@ fn bands_of_any_width_and_none() {
     let mesh = ball(3, |p| 0.5 + 0.1 * (7.0 * p.x).sin());
     let around = lattice(&mesh, 1.0 / 20.0, 3);
     let widths = [0.01, 1.0, 2.5, 9.0, 400.0];
-    let counts: Vec<usize> = widths.iter().map(|&h| check("ball", &mesh, &around, Band::Within(h))).collect();
+    let counts: Vec<usize> = widths.iter().map(|&h| check_lattice("ball", &mesh, &around, Band::Within(h))).collect();
     assert!(counts.is_sorted(), "{counts:?}");
-    let all = check("ball", &mesh, &around, Band::Full);
+    let all = check_lattice("ball", &mesh, &around, Band::Full);
     assert_eq!(all, counts[4]);
 }
 
 #[test]
 fn a_lattice_that_cuts_the_body_or_misses_it() {
-    let mesh = turned(crate::common::shapes::torus(24, 12), 0.4);
+    let mesh = turned(torus(24, 12), 0.4);
     let low = DVec3::new(0.4, -0.3, -0.2);
     for (low, band) in
         [(low, 3.0), (DVec3::new(0.95, -0.05, -0.1), 1.0), (DVec3::splat(2.0), 8.0), (DVec3::splat(9.0), 2.0)]
     {
         let small = Lattice { origin: low, h: 1.0 / 60.0, dims: IVec3::new(41, 33, 20) };
-        check("torus", &mesh, &small, Band::Within(band));
+        check_lattice("torus", &mesh, &small, Band::Within(band));
     }
     let inside = Lattice { origin: DVec3::splat(-0.2), h: 0.01, dims: IVec3::splat(40) };
     let grid = field(&ball(2, |_| 1.0), &inside, Band::Within(2.0));
@@ -90,11 +57,12 @@ fn a_lattice_that_cuts_the_body_or_misses_it() {
 }
 
 #[test]
-fn real_meshes() {
-    for (name, resolution) in [("fandisk.off", 60.0), ("88566.stl", 40.0), ("decimated-knight.off", 40.0)] {
-        let mesh = crate::common::read(&crate::common::data_folder().join("clean").join(name));
+fn parts_of_any_shape() {
+    for (name, mesh, resolution) in
+        [("knot", knot(96, 16), 60.0), ("gear", turned(gear(24), 0.3), 60.0), ("stack", stack(0.4), 40.0)]
+    {
         let h = mesh.bounds().expect("triangles").size().max_element() / resolution;
-        check(name, &mesh, &lattice(&mesh, h, 3), Band::Within(3.0));
+        check_lattice(name, &mesh, &lattice(&mesh, h, 3), Band::Within(3.0));
     }
 }
 
@@ -104,13 +72,13 @@ fn scale_and_place_do_not_matter() {
     for (scale, shift) in [(1e-6, DVec3::ZERO), (1e5, DVec3::ZERO), (1.0, DVec3::new(4e3, -7e3, 1e3))] {
         let mut moved = mesh.clone();
         moved.positions.iter_mut().for_each(|p| *p = *p * scale + shift);
-        check("ball", &moved, &lattice(&moved, scale / 25.0, 2), Band::Within(3.0));
+        check_lattice("ball", &moved, &lattice(&moved, scale / 25.0, 2), Band::Within(3.0));
     }
 }
 
 #[test]
 fn threads_do_not_change_a_bit() {
-    let mesh = closed().swap_remove(3).1;
+    let mesh = hard().swap_remove(3).1;
     let around = lattice(&mesh, 1.0 / 40.0, 5);
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
@@ -138,7 +106,7 @@ fn a_vast_lattice_costs_no_more_than_the_band() {
 
 #[test]
 fn costs_are_foretold() {
-    for (name, mesh) in closed() {
+    for (name, mesh) in hard() {
         for (resolution, width) in [(40.0, 2.0), (40.0, 12.0), (100.0, 3.0)] {
             let around = lattice(&mesh, 1.0 / resolution, width as i32);
             let told = cost(&mesh, &around, Band::Within(width)).voxels as f64;
@@ -198,7 +166,7 @@ proptest! {
         mesh.positions.iter_mut().zip(&seen).for_each(|(p, (_, radius))| *p *= *radius);
         let mesh = turned(mesh, angle);
         let around = lattice(&mesh, h, 2);
-        check("star", &mesh, &around, Band::Within(width));
+        check_lattice("star", &mesh, &around, Band::Within(width));
         let grid = field(&mesh, &around, Band::Within(width));
         for n in 0..40 {
             let v = IVec3::new(n * 7 % around.dims.x, n * 5 % around.dims.y, n * 3 % around.dims.z);

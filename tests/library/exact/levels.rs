@@ -8,8 +8,8 @@ use meshwright::sdf::Levels;
 use meshwright::sdf::exact::{Band, ExactOptions, Sign, exact};
 use proptest::prelude::*;
 
-use super::shapes::{ball, closed, distance_to, lattice, winding};
-use crate::common::{data_folder, read, shapes};
+use crate::common::exact::{distance_to, lattice, same_sides, threads_leave_levels_alone, voxels, winding};
+use crate::common::shapes::{self, ball, hard, knot, scan};
 
 fn levels(mesh: &TriMesh, lattice: &Lattice) -> Levels {
     Levels::of(mesh, lattice, &Progress::none()).expect("levels")
@@ -20,34 +20,16 @@ fn field(mesh: &TriMesh, lattice: &Lattice, sign: Sign<'_>, band: Band) -> Grid<
     exact(mesh, lattice, sign, &options, &Progress::none()).expect("a field")
 }
 
-fn voxels(lattice: &Lattice) -> impl Iterator<Item = IVec3> + use<> {
-    let dims = lattice.dims;
-    (0..dims.element_product()).map(move |n| IVec3::new(n % dims.x, n / dims.x % dims.y, n / (dims.x * dims.y)))
-}
-
-/// Compares all voxels that are off the surface; returns how many are inside.
-fn same_sides(name: &str, mesh: &TriMesh, around: &Lattice, band: Band) -> usize {
-    let by_normals = field(mesh, around, Sign::Pseudonormal, band);
-    let by_levels = field(mesh, around, Sign::Levels(&levels(mesh, around)), band);
-    let mut inside = 0;
-    for v in voxels(around) {
-        let (truth, got) = (by_normals.get(v), by_levels.get(v));
-        assert!(truth.abs() < 1e-6 || truth == got, "{name}: {got} instead of {truth} at {v}");
-        inside += usize::from(got < 0.0);
-    }
-    inside
-}
-
 #[test]
 fn closed_meshes_have_the_sides_of_their_normals() {
-    for (name, mesh) in closed() {
+    for (name, mesh) in hard() {
         for band in [Band::Within(3.0), Band::Full] {
             same_sides(name, &mesh, &lattice(&mesh, 1.0 / 40.0, 3), band);
         }
     }
-    let knot = read(&data_folder().join("clean/quadknot.obj"));
+    let knot = knot(96, 16);
     let size = knot.bounds().expect("triangles").size().max_element();
-    assert!(same_sides("quadknot", &knot, &lattice(&knot, size / 100.0, 3), Band::Within(3.0)) > 10_000);
+    assert!(same_sides("knot", &knot, &lattice(&knot, size / 100.0, 3), Band::Within(3.0)) > 10_000);
 }
 
 /// Vertices, edges and sides on voxels: all else is as if they were not.
@@ -133,15 +115,7 @@ fn a_flat_sheet_encloses_nothing() {
 
 #[test]
 fn threads_do_not_change_a_bit() {
-    let mut mesh = read(&data_folder().join("broken/camelhead.off"));
-    mesh.triangles.retain(|t| t[0] % 7 != 0);
-    let size = mesh.bounds().expect("triangles").size().max_element();
-    let around = lattice(&mesh, size / 100.0, 2);
-    let with = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| levels(&mesh, &around))
-    };
-    assert!(with(1) == with(3));
+    threads_leave_levels_alone(scan());
 }
 
 proptest! {

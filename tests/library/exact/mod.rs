@@ -5,5 +5,4 @@ mod lattices;
 mod levels;
 mod points;
 mod prism;
-mod shapes;
 mod soups;

@@ -3,50 +3,24 @@
 use glam::DVec3;
 use meshwright::mesh::{Feature, TriMesh};
 use meshwright::sdf::exact::{ExactDistance, PointSign};
-use rayon::prelude::*;
 
-use super::shapes::{ball, by_looking, closed, distance_to, spread, winding};
-
-/// Points for each mesh: 300, or what the environment says. The project's promise is tested with
-/// `MESHWRIGHT_POINTS=20000 cargo test --release --test exact points`.
-fn count() -> usize {
-    std::env::var("MESHWRIGHT_POINTS").ok().and_then(|count| count.parse().ok()).unwrap_or(300)
-}
-
-fn check(name: &str, mesh: &TriMesh) {
-    let bounds = mesh.bounds().expect("triangles");
-    let (diagonal, room) = (bounds.diagonal(), bounds.size() * 0.3);
-    let exact = ExactDistance::of(mesh, PointSign::Pseudonormal);
-    let points = spread(bounds.min - room, bounds.max + room, count());
-    let asked = exact.at_all(&points);
-    points.par_iter().zip(asked).for_each(|(&p, nearest)| {
-        let nearest = nearest.expect("triangles");
-        let truth = by_looking(mesh, p);
-        let error = (nearest.signed.abs() - truth.abs()).abs();
-        assert!(error <= 1e-9 * diagonal, "{name}: {} instead of {truth} at {p}", nearest.signed);
-        if truth.abs() > 1e-9 * diagonal {
-            assert_eq!(nearest.signed < 0.0, truth < 0.0, "{name}: {} instead of {truth} at {p}", nearest.signed);
-        }
-        assert_eq!(Some(nearest), exact.at(p), "{name}: a packet and a single point differ at {p}");
-        // The nearest point is where it says, and the gradient points away from it.
-        let on = distance_to(nearest.point, mesh.corners(nearest.triangle as usize));
-        assert!(on <= 1e-9 * diagonal, "{name}: {on} off the triangle");
-        let step = nearest.point + nearest.gradient * nearest.signed;
-        assert!((step - p).length() <= 1e-9 * diagonal, "{name}: {step} is not {p}");
-    });
-}
+use crate::common::exact::{by_looking, check_points, spread, winding};
+use crate::common::shapes::{ball, gear, hard, knot};
+use crate::common::{read, sample};
 
 #[test]
-fn five_real_meshes_by_looking_at_all_triangles() {
-    for name in ["fandisk.off", "3holes.off", "decimated-knight.off", "quadknot.obj", "112932.stl"] {
-        check(name, &crate::common::read(&crate::common::data_folder().join("clean").join(name)));
+fn hard_meshes_by_looking_at_all_triangles() {
+    for (name, mesh) in hard() {
+        check_points(name, &mesh);
     }
 }
 
 #[test]
-fn made_meshes_by_looking_at_all_triangles() {
-    for (name, mesh) in closed() {
-        check(name, &mesh);
+fn parts_and_files_by_looking_at_all_triangles() {
+    check_points("knot", &knot(96, 16));
+    check_points("gear", &gear(24));
+    for name in ["hollow_ball.stl", "monkey_saddle.off", "torus.ply"] {
+        check_points(name, &read(&sample(name)));
     }
 }
 

@@ -1,32 +1,24 @@
 //! Prism scan conversion against the exact field.
 
 use glam::DVec3;
-use meshwright::lattice::Lattice;
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
-use meshwright::sdf::exact::{Band, ExactOptions, Sign, exact};
+use meshwright::sdf::exact::{Band, ExactOptions};
 use meshwright::sdf::prism::prism;
 use proptest::prelude::*;
 
-use super::shapes::{ball, closed, lattice, turned};
-
-/// How far the prisms' field is from the exact one, h, and how many voxels of the band have another side.
-fn differences(mesh: &TriMesh, lattice: &Lattice, band: f64) -> (f64, usize, usize) {
-    let options = ExactOptions { band: Band::Within(band), max_memory: None };
-    let truth = exact(mesh, lattice, Sign::Pseudonormal, &options, &Progress::none()).expect("a field");
-    let found = prism(mesh, lattice, &options, &Progress::none()).expect("a field");
-    crate::common::fields::apart(&truth, &found, band)
-}
+use crate::common::exact::{from_prisms, lattice};
+use crate::common::shapes::{ball, gear, hard, knot, turned};
 
 #[test]
 fn prisms_give_the_exact_field_of_hard_meshes() {
-    for (name, mesh) in closed() {
+    for (name, mesh) in hard() {
         // Nothing in single precision tells the sides of sheets 1e-7 apart.
         if name.starts_with("sheets") {
             continue;
         }
         for (h, band) in [(0.05, 3.0), (0.021, 12.0)] {
-            let (most, wrong, count) = differences(&mesh, &lattice(&mesh, h, band as i32), band);
+            let (most, wrong, count) = from_prisms(&mesh, &lattice(&mesh, h, band as i32), band);
             assert!(most < 1e-4 && wrong == 0 && count > 1000, "{name} {h}: {most} h, {wrong} of {count} sides");
         }
     }
@@ -34,12 +26,10 @@ fn prisms_give_the_exact_field_of_hard_meshes() {
 
 #[test]
 fn prisms_give_the_exact_field_of_a_knot_and_of_a_part_at_64_and_128() {
-    let clean = crate::common::data_folder().join("clean");
-    for name in ["quadknot.obj", "fandisk.off"] {
-        let mesh = crate::common::read(&clean.join(name));
+    for (name, mesh) in [("knot", knot(96, 16)), ("gear", turned(gear(24), 0.3))] {
         let longest = mesh.bounds().expect("triangles").size().max_element();
         for (resolution, band) in [(64.0, 6.4), (128.0, 12.8)] {
-            let (most, wrong, count) = differences(&mesh, &lattice(&mesh, longest / resolution, 13), band);
+            let (most, wrong, count) = from_prisms(&mesh, &lattice(&mesh, longest / resolution, 13), band);
             assert!(most < 1e-4 && wrong == 0, "{name} {resolution}: {most} h, {wrong} of {count} sides");
         }
     }
@@ -54,7 +44,7 @@ fn a_step_lower_than_a_voxel_hides_nothing() {
     let mut triangles: Vec<[u32; 3]> = cap.iter().flat_map(|&[a, b, c]| [[a, c, b], [a + 6, b + 6, c + 6]]).collect();
     triangles.extend((0..6).flat_map(|k| [[k, (k + 1) % 6, k + 6], [(k + 1) % 6, (k + 1) % 6 + 6, k + 6]]));
     let mesh = turned(TriMesh { positions, triangles }, 0.4);
-    let (most, wrong, count) = differences(&mesh, &lattice(&mesh, 0.03, 16), 16.0);
+    let (most, wrong, count) = from_prisms(&mesh, &lattice(&mesh, 0.03, 16), 16.0);
     assert!(most < 1e-4 && wrong == 0, "{most} h, {wrong} of {count} sides");
 }
 
@@ -83,7 +73,7 @@ proptest! {
             0.5 + waves.iter().map(|w| w.3 * (w.0 * p.x + w.1 * p.y).sin() * (w.2 * p.z).cos()).sum::<f64>()
         };
         let mesh = turned(ball(3, |p| radius(p).max(0.05)), angle);
-        let (most, wrong, count) = differences(&mesh, &lattice(&mesh, 0.04, band as i32), band);
+        let (most, wrong, count) = from_prisms(&mesh, &lattice(&mesh, 0.04, band as i32), band);
         prop_assert!(most < 1e-4 && wrong == 0, "{} h, {} of {} sides", most, wrong, count);
     }
 }

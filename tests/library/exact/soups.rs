@@ -8,7 +8,8 @@ use meshwright::progress::Progress;
 use meshwright::sdf::exact::{Band, ExactDistance, ExactOptions, PointSign, Sign, exact};
 use meshwright::vote::{VoteRule, Winding};
 
-use super::shapes::{ball, lattice, voxel, winding};
+use crate::common::exact::{lattice, voxel, winding};
+use crate::common::shapes::ball;
 use crate::common::{shapes, stages};
 
 /// A ball with a hole, and a box that overlaps it.

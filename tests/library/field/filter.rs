@@ -6,65 +6,21 @@ use glam::DVec3;
 use meshwright::field::filter::{
     Adaptive, FilterError, FilterOptions, Kernel, Sampling, SmoothOptions, WIDEST, filtered, smooth,
 };
-use meshwright::field::{Body, MeshField, Shared, Solid, scattered};
-use meshwright::mesh::{Bounds, TriMesh};
-use meshwright::sdf::exact::PointSign;
+use meshwright::field::{Body, Shared, Solid, scattered};
+use meshwright::mesh::Bounds;
 
 use super::support::{cube, surface};
-use crate::common::{data_folder, read, shapes};
-
-/// Points on the triangles, spread by their areas.
-fn on_surface(mesh: &TriMesh, count: usize) -> Vec<DVec3> {
-    let area = |t: usize| {
-        let [a, b, c] = mesh.corners(t);
-        (b - a).cross(c - a).length()
-    };
-    let sums: Vec<f64> = (0..mesh.triangles.len())
-        .scan(0.0, |sum, t| {
-            *sum += area(t);
-            Some(*sum)
-        })
-        .collect();
-    let unit = Bounds { min: DVec3::ZERO, max: DVec3::ONE };
-    let place = |p: DVec3| {
-        let t = sums.partition_point(|&sum| sum < p.z * sums[sums.len() - 1]).min(sums.len() - 1);
-        let [a, b, c] = mesh.corners(t);
-        let (u, v) = if p.x + p.y > 1.0 { (1.0 - p.x, 1.0 - p.y) } else { (p.x, p.y) };
-        a + (b - a) * u + (c - a) * v
-    };
-    scattered(count, 9, &unit).into_iter().map(place).collect()
-}
-
-fn five_meshes() -> Vec<(&'static str, TriMesh)> {
-    let real = |name: &'static str| (name, read(&data_folder().join(name)));
-    vec![
-        real("clean/fandisk.off"),
-        real("clean/rocker-arm.obj"),
-        real("clean/88566.stl"),
-        real("clean/quadknot.obj"),
-        ("torus", shapes::torus(64, 32)),
-    ]
-}
+use crate::common::proofs::keeps_its_zero_level_when_filtered;
+use crate::common::{read, sample, shapes};
 
 #[test]
 fn the_zero_level_is_unchanged_and_no_other_arises() {
-    for (name, mesh) in five_meshes() {
-        let bounds = mesh.bounds().unwrap();
-        let diagonal = bounds.diagonal();
-        let plain: Shared = Arc::new(MeshField::new(&mesh, PointSign::Pseudonormal, 0));
-        let few = Sampling::Drawn { count: 8, seed: 0, mirrored: true };
-        let options = FilterOptions { sampling: few, ..FilterOptions::new(0.05 * diagonal) };
-        let smooth = filtered(plain.clone(), &options).unwrap();
-        let points = on_surface(&mesh, 10_000);
-        let mut values = vec![0.0; points.len()];
-        smooth.values(&points, &mut values);
-        let worst = values.iter().fold(0.0, |worst: f64, value| worst.max(value.abs()));
-        assert!(worst <= 1e-6 * diagonal, "{name}: {} of the diagonal", worst / diagonal);
-        let grown = Bounds { min: bounds.min - 0.1 * diagonal, max: bounds.max + 0.1 * diagonal };
-        for p in scattered(1500, 3, &grown) {
-            let (before, after) = (plain.value(p), smooth.value(p));
-            assert!(before * after > 0.0 || before == 0.0, "{name}: {before} becomes {after} at {p}");
-        }
+    keeps_its_zero_level_when_filtered("torus", &shapes::torus(64, 32));
+    keeps_its_zero_level_when_filtered("knot", &shapes::knot(96, 16));
+    keeps_its_zero_level_when_filtered("gear", &shapes::turned(shapes::gear(24), 0.3));
+    keeps_its_zero_level_when_filtered("stack", &shapes::stack(0.2));
+    for name in ["monkey_saddle.off", "hollow_ball.stl"] {
+        keeps_its_zero_level_when_filtered(name, &read(&sample(name)));
     }
 }
 

@@ -8,7 +8,8 @@ use meshwright::progress::Progress;
 use proptest::prelude::*;
 
 use super::support::{all, lattice, mesh, room};
-use crate::common::{data_folder, read, shapes};
+use crate::common::proofs::packets_find_what_single_searches_find;
+use crate::common::shapes;
 
 /// Points, half of them near each other.
 fn places(count: usize, seed: u64) -> Vec<DVec3> {
@@ -35,22 +36,9 @@ fn a_packet_says_what_each_point_says() {
 
 #[test]
 fn packets_of_a_tree_find_what_single_searches_find() {
-    let bunny = read(&data_folder().join("broken/stanford-bunny.obj"));
-    let slivers = shapes::torus_of(400, 3, 1.0, 1e-7);
-    for (mesh, far) in [(bunny, 1.0), (slivers, 1.0), (shapes::torus(64, 32), 1e6)] {
-        let bounds = mesh.bounds().unwrap();
-        let grown = Bounds { min: bounds.min - bounds.size() * far, max: bounds.max + bounds.size() * far };
-        let tree = ClosestTree::of_mesh(&mesh);
-        let mut points = scattered(300, 1, &grown);
-        points.extend(scattered(2000, 2, &bounds));
-        points.extend(mesh.positions.iter().take(500));
-        let mut found = Vec::new();
-        tree.nearest_all(&points, &mut found);
-        assert_eq!(found.len(), points.len());
-        for (p, found) in points.iter().zip(&found) {
-            assert_eq!(tree.nearest(*p).as_ref(), Some(found), "{p}");
-        }
-    }
+    packets_find_what_single_searches_find(&shapes::scan(), 1.0);
+    packets_find_what_single_searches_find(&shapes::torus_of(400, 3, 1.0, 1e-7), 1.0);
+    packets_find_what_single_searches_find(&shapes::torus(64, 32), 1e6);
     let mut found = vec![];
     ClosestTree::<[DVec3; 3]>::new(Vec::new()).nearest_all(&[DVec3::ZERO], &mut found);
     assert!(found.is_empty());

@@ -5,11 +5,12 @@ use meshwright::gpu::{Device, GpuError, GpuLimits, GpuMethod, GpuOptions, Wanted
 use meshwright::mesh::TriMesh;
 use meshwright::progress::{Progress, Stopped};
 
-use super::{BOTH, by, compare, device, on_gpu};
+use crate::common::gpu::{BOTH, by, compare, device, on_gpu};
 use crate::common::{shapes, stages};
 
 #[test]
 fn tiles_chunks_and_halved_tiles_change_nothing() {
+    let Some(device) = device() else { return };
     let mesh = shapes::torus(40, 20);
     let lattice = stages::lattice_of(&mesh, 50);
     let all = [
@@ -19,18 +20,19 @@ fn tiles_chunks_and_halved_tiles_change_nothing() {
     ];
     for limits in all {
         let options = BOTH.map(|method| GpuOptions { limits, ..by(method) });
-        compare(&format!("{limits:?}"), &mesh, &lattice, 1, &options);
+        compare(device, &format!("{limits:?}"), &mesh, &lattice, 1, &options);
     }
 }
 
 #[test]
 fn a_ray_with_more_crossings_than_fit_is_an_error() {
+    let Some(device) = device() else { return };
     let sheet = [DVec3::ZERO, DVec3::new(9.0, 0.0, 1.0), DVec3::new(0.0, 9.0, 1.0)];
     let mesh = TriMesh { positions: sheet.to_vec(), triangles: vec![[0, 1, 2]; 50] };
     let limits = GpuLimits { crossings: 49, ..GpuLimits::default() };
     let options = GpuOptions { limits, ..by(GpuMethod::Scatter) };
     let lattice = stages::lattice_of(&mesh, 8);
-    let result = ldis(device(), &mesh, &lattice, 1, &options, &Progress::none());
+    let result = ldis(device, &mesh, &lattice, 1, &options, &Progress::none());
     assert_eq!(result.err(), Some(GpuError::TooLarge { crossings: 50, most: 49 }));
 }
 
@@ -43,31 +45,33 @@ fn an_adapter_that_does_not_exist_is_an_error_that_names_those_that_do() {
 
 #[test]
 fn a_set_flag_stops_between_directions() {
+    let Some(device) = device() else { return };
     let mesh = shapes::torus(12, 8);
     let flag = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true));
     let progress = Progress::none().with_flag(flag);
     for method in BOTH {
-        let result = ldis(device(), &mesh, &stages::lattice_of(&mesh, 16), 1, &by(method), &progress);
+        let result = ldis(device, &mesh, &stages::lattice_of(&mesh, 16), 1, &by(method), &progress);
         assert_eq!(result.err(), Some(GpuError::Stopped(Stopped::Interrupted)));
     }
 }
 
 #[test]
 fn what_moves_is_counted_and_passes_are_timed_where_the_adapter_can() {
+    let Some(device) = device() else { return };
     let mesh = shapes::torus(24, 12);
     let lattice = stages::lattice_of(&mesh, 32);
     for (method, passes) in
         [(GpuMethod::Scatter, &["count", "scan", "scatter", "set up"][..]), (GpuMethod::Peel, &["peel", "set up"])]
     {
-        let (layers, report) = on_gpu(&mesh, &lattice, 1, &GpuOptions { timings: true, ..by(method) });
+        let (layers, report) = on_gpu(device, &mesh, &lattice, 1, &GpuOptions { timings: true, ..by(method) });
         let crossings: usize = layers.iter().map(|layers| layers.hits.len()).sum();
         assert!(report.bytes_up >= 36 * mesh.triangles.len() as u64);
         assert!(report.bytes_down >= 4 * crossings as u64);
-        if device().entry().timestamps {
+        if device.entry().timestamps {
             let names: Vec<_> = report.passes.iter().map(|pass| pass.pass).collect();
             assert_eq!(names, passes);
             assert!(report.passes.iter().all(|pass| pass.count >= 13 && pass.seconds > 0.0), "{:?}", report.passes);
         }
-        assert_eq!(on_gpu(&mesh, &lattice, 1, &by(method)).1.passes, []);
+        assert_eq!(on_gpu(device, &mesh, &lattice, 1, &by(method)).1.passes, []);
     }
 }

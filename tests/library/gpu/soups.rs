@@ -6,7 +6,7 @@ use meshwright::lattice::Lattice;
 use meshwright::mesh::TriMesh;
 use proptest::prelude::*;
 
-use super::{BOTH, by, compare};
+use crate::common::gpu::{BOTH, by, compare, device};
 use crate::common::shapes;
 
 fn lattice(dims: IVec3) -> Lattice {
@@ -40,24 +40,24 @@ fn soup() -> impl Strategy<Value = TriMesh> {
     )
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
-
-    #[test]
-    fn random_soups_have_the_same_crossings(
+#[test]
+fn random_soups_have_the_same_crossings() {
+    let Some(device) = device() else { return };
+    proptest!(ProptestConfig { cases: 48, ..ProptestConfig::default() }, |(
         soup in soup(),
         dims in prop::sample::select(vec![[9, 7, 8], [1, 1, 1], [3, 12, 2]]),
         factor in 1u32..3,
         tile_side in prop::sample::select(vec![u32::MAX, 7]),
-    ) {
+    )| {
         let limits = GpuLimits { tile_side, ..GpuLimits::default() };
         let options = BOTH.map(|method| GpuOptions { limits, ..by(method) });
-        compare("soup", &soup, &lattice(IVec3::from_array(dims)), factor, &options);
-    }
+        compare(device, "soup", &soup, &lattice(IVec3::from_array(dims)), factor, &options);
+    });
 }
 
 #[test]
 fn boxes_with_sides_in_common_lose_no_layer() {
+    let Some(device) = device() else { return };
     let mut mesh = TriMesh::default();
     for n in 0..5 {
         // Each box twice, and its neighbour's side on its own.
@@ -66,12 +66,13 @@ fn boxes_with_sides_in_common_lose_no_layer() {
             mesh.append(&shapes::cuboid(low, low + DVec3::new(2.0, 4.0, 3.0)));
         }
     }
-    let layers = compare("boxes", &mesh, &lattice(IVec3::new(12, 8, 7)), 1, &BOTH.map(by));
+    let layers = compare(device, "boxes", &mesh, &lattice(IVec3::new(12, 8, 7)), 1, &BOTH.map(by));
     assert_eq!(layers[0].deepest(), 20, "two boxes at each of five places along x");
 }
 
 #[test]
 fn slivers_and_needles_across_the_lattice_are_not_lost() {
+    let Some(device) = device() else { return };
     let mut mesh = TriMesh::default();
     for n in 0..60 {
         let (t, thin) = (f64::from(n) * 0.37, 2f64.powi(-(n % 17)));
@@ -80,11 +81,12 @@ fn slivers_and_needles_across_the_lattice_are_not_lost() {
         mesh.positions.extend([start, start + DVec3::new(40.0 - t, 90.0, 20.0), start + DVec3::new(thin, 0.0, thin)]);
         mesh.triangles.push([at, at + 1, at + 2]);
     }
-    compare("slivers", &mesh, &lattice(IVec3::new(40, 80, 30)), 2, &BOTH.map(by));
+    compare(device, "slivers", &mesh, &lattice(IVec3::new(40, 80, 30)), 2, &BOTH.map(by));
 }
 
 #[test]
 fn an_empty_soup_has_no_crossings() {
-    let layers = compare("nothing", &TriMesh::default(), &lattice(IVec3::splat(4)), 1, &BOTH.map(by));
+    let Some(device) = device() else { return };
+    let layers = compare(device, "nothing", &TriMesh::default(), &lattice(IVec3::splat(4)), 1, &BOTH.map(by));
     assert!(layers.iter().all(|layers| layers.hits.is_empty()));
 }

@@ -1,37 +1,11 @@
 //! Meshes and checks that several tests share.
 
 use glam::DVec3;
-use meshwright::io::{Colours, Format, Loaded, Paint, WriteOptions, encode, encode_coloured, encode_painted};
+use meshwright::io::{Colours, Format, Paint, WriteOptions, encode, encode_coloured, encode_painted};
 use meshwright::mesh::TriMesh;
 
+pub use crate::common::proofs::assert_sound;
 use crate::common::textured;
-
-/// What every reader promises.
-pub fn assert_sound(loaded: &Loaded) {
-    let mesh = &loaded.mesh;
-    assert!(!mesh.triangles.is_empty());
-    assert!(mesh.positions.iter().all(|p| p.is_finite()));
-    assert!(mesh.triangles.iter().flatten().all(|&v| (v as usize) < mesh.positions.len()));
-    assert_eq!(loaded.parts.first().map(|p| p.triangles.start), Some(0));
-    assert_eq!(loaded.parts.last().map(|p| p.triangles.end), Some(mesh.triangles.len()));
-    assert!(loaded.parts.windows(2).all(|pair| pair[0].triangles.end == pair[1].triangles.start));
-    assert!(loaded.parts.iter().all(|p| !p.triangles.is_empty()));
-    if let Some(negative) = &loaded.negative {
-        let mesh = &negative.mesh;
-        assert!(!mesh.triangles.is_empty() && mesh.positions.iter().all(|p| p.is_finite()));
-        assert!(mesh.triangles.iter().flatten().all(|&v| (v as usize) < mesh.positions.len()));
-        let counted: usize = negative.parts.iter().map(|part| part.triangles.len()).sum();
-        assert_eq!(counted, mesh.triangles.len());
-    }
-    assert!(loaded.texture.as_ref().is_none_or(|texture| texture.fits(mesh)));
-    assert!(loaded.texture.iter().flat_map(|t| &t.coordinates).flatten().flatten().flatten().all(|x| x.is_finite()));
-    match &loaded.colours {
-        None => {}
-        Some(Colours::Faces(colours)) => assert_eq!(colours.len(), mesh.triangles.len()),
-        Some(Colours::Vertices(colours)) => assert_eq!(colours.len(), mesh.positions.len()),
-        Some(Colours::Corners(colours)) => assert_eq!(colours.len(), mesh.triangles.len()),
-    }
-}
 
 /// A tetrahedron.
 pub fn tetrahedron() -> TriMesh {

@@ -1,38 +1,36 @@
 //! The real meshes beside the project.
 
-use std::path::{Path, PathBuf};
-
 use meshwright::io::{Colours, Format, Loaded, Rgba, Unit, read};
 
-use super::support::assert_sound;
+use crate::common::proofs::{against_another_reader, assert_sound};
+use crate::{Data, data};
 
-fn data() -> PathBuf {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data")).to_owned()
-}
+impl Data {
+    fn load(&self, name: &str) -> Loaded {
+        let loaded = read(&self.path(name)).unwrap_or_else(|error| panic!("{error}"));
+        assert_sound(&loaded);
+        loaded
+    }
 
-fn load(name: &str) -> Loaded {
-    let loaded = read(&data().join(name)).unwrap_or_else(|error| panic!("{error}"));
-    assert_sound(&loaded);
-    loaded
-}
-
-/// File and faces of each row of the table beside the meshes.
-fn table() -> Vec<(String, usize)> {
-    let text = std::fs::read_to_string(data().join("README.md")).expect("the real meshes are part of the tests");
-    let rows = text.lines().filter_map(|line| {
-        let mut cells = line.split('|').map(str::trim).skip(1);
-        let (name, faces) = (cells.next()?, cells.nth(1)?);
-        Some((name.to_owned(), faces.parse().ok()?))
-    });
-    rows.collect()
+    /// File and faces of each row of the table beside the meshes.
+    fn table(&self) -> Vec<(String, usize)> {
+        let text = std::fs::read_to_string(self.path("README.md")).expect("the table is part of the data");
+        let rows = text.lines().filter_map(|line| {
+            let mut cells = line.split('|').map(str::trim).skip(1);
+            let (name, faces) = (cells.next()?, cells.nth(1)?);
+            Some((name.to_owned(), faces.parse().ok()?))
+        });
+        rows.collect()
+    }
 }
 
 #[test]
 fn every_real_mesh_has_its_faces() {
-    let rows = table();
+    let Some(data) = data() else { return };
+    let rows = data.table();
     assert_eq!(rows.len(), 41);
     for (name, faces) in rows {
-        let loaded = load(&name);
+        let loaded = data.load(&name);
         assert_eq!(loaded.mesh.triangles.len(), faces, "{name}");
         let extension = name.rsplit('.').next().unwrap();
         assert_eq!(loaded.format.name(), extension.to_lowercase(), "{name}");
@@ -62,27 +60,29 @@ fn tally(loaded: &Loaded) -> Vec<(Rgba, usize)> {
 
 #[test]
 fn real_meshes_have_their_colours() {
+    let Some(data) = data() else { return };
     // All vertices are white, the faces are not.
-    let counts = tally(&load("broken/cycloidal.ply"));
+    let counts = tally(&data.load("broken/cycloidal.ply"));
     assert_eq!(counts.len(), 7);
     assert!(counts.contains(&([191, 191, 191, 255], 12198)));
     // The colours are stated for the objects that hold the components.
-    let loaded = load("broken/counterXP.3MF");
+    let loaded = data.load("broken/counterXP.3MF");
     let body = loaded.parts[0].triangles.len();
     let screws = loaded.mesh.triangles.len() - body;
     assert_eq!(tally(&loaded), [([0, 0, 0, 255], screws), ([0xca, 0xd1, 0xee, 255], body)]);
     // Materials; the textured parts are white.
-    let loaded = load("broken/CesiumMilkTruck.glb");
+    let loaded = data.load("broken/CesiumMilkTruck.glb");
     let shown = meshwright::io::shown_colours(loaded.colours.as_ref(), loaded.texture.as_ref());
     let shown = Loaded { colours: shown.map(std::borrow::Cow::into_owned), ..loaded };
     let colours: Vec<Rgba> = tally(&shown).into_iter().map(|(colour, _)| colour).collect();
     assert_eq!(colours, [[0, 57, 40, 255], [72, 72, 72, 255], [255; 4]]);
-    assert_eq!(load("clean/fandisk.off").colours, None);
+    assert_eq!(data.load("clean/fandisk.off").colours, None);
 }
 
 #[test]
 fn stl_is_welded() {
-    let loaded = load("clean/65004.stl");
+    let Some(data) = data() else { return };
+    let loaded = data.load("clean/65004.stl");
     // A closed surface of genus g has F/2 + 2 − 2g vertices.
     let (vertices, faces) = (loaded.mesh.positions.len(), loaded.mesh.triangles.len());
     assert_eq!((faces / 2 + 2 - vertices) % 2, 0);
@@ -91,7 +91,8 @@ fn stl_is_welded() {
 
 #[test]
 fn solids_objects_and_nodes_become_parts() {
-    let names = |name: &str| load(name).parts.into_iter().map(|p| p.name).collect::<Vec<_>>();
+    let Some(data) = data() else { return };
+    let names = |name: &str| data.load(name).parts.into_iter().map(|p| p.name).collect::<Vec<_>>();
     assert_eq!(names("broken/multibody.stl"), ["bodyB", "bodyA"]);
     assert_eq!(names("broken/beetle.obj").len(), 1);
     // One body and five placed copies of a screw.
@@ -103,15 +104,17 @@ fn solids_objects_and_nodes_become_parts() {
 
 #[test]
 fn units_are_read() {
-    assert_eq!(load("broken/counterXP.3MF").unit, Some(Unit::Millimetre));
-    assert_eq!(load("broken/CesiumMilkTruck.glb").unit, Some(Unit::Metre));
-    assert_eq!(load("broken/teapot.obj").unit, None);
+    let Some(data) = data() else { return };
+    assert_eq!(data.load("broken/counterXP.3MF").unit, Some(Unit::Millimetre));
+    assert_eq!(data.load("broken/CesiumMilkTruck.glb").unit, Some(Unit::Metre));
+    assert_eq!(data.load("broken/teapot.obj").unit, None);
 }
 
 #[test]
 fn a_truck_stands_on_its_wheels() {
+    let Some(data) = data() else { return };
     // With the node transforms the truck is about 5 m long, y is up, and both axles lie apart.
-    let loaded = load("broken/CesiumMilkTruck.glb");
+    let loaded = data.load("broken/CesiumMilkTruck.glb");
     let size = loaded.mesh.bounds().unwrap().size();
     assert!(size.x > 4.0 && size.x < 6.0 && size.y > 2.0 && size.y < 3.5, "{size}");
     let wheels: Vec<_> = loaded.parts.iter().filter(|p| p.name.contains("Wheels")).collect();
@@ -123,29 +126,16 @@ fn a_truck_stands_on_its_wheels() {
     assert!((centre(&wheels[0].triangles) - centre(&wheels[1].triangles)).length() > 2.0);
 }
 
-/// The reader against an independent one, on every real OBJ file that both accept.
+/// The reader against an independent one, on every OBJ file that both accept.
 #[test]
 fn obj_agrees_with_another_reader() {
+    let Some(data) = data() else { return };
     let mut compared = 0;
-    for (name, _) in table().into_iter().filter(|(name, _)| name.ends_with(".obj")) {
-        let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
-        let Ok((models, _)) = tobj::load_obj(data().join(&name), &options) else {
-            continue;
-        };
-        let theirs: Vec<[[f64; 3]; 3]> = models
-            .iter()
-            .flat_map(|model| {
-                let point = |v: u32| std::array::from_fn(|k| model.mesh.positions[3 * v as usize + k]);
-                model.mesh.indices.chunks_exact(3).map(move |t| [point(t[0]), point(t[1]), point(t[2])])
-            })
-            .collect();
-        let loaded = load(&name);
-        let ours: Vec<[[f64; 3]; 3]> =
-            (0..loaded.mesh.triangles.len()).map(|t| loaded.mesh.corners(t).map(|p| p.to_array())).collect();
+    for (name, _) in data.table().into_iter().filter(|(name, _)| name.ends_with(".obj")) {
+        let Some((same, ours, theirs)) = against_another_reader(&data.path(&name)) else { continue };
         // Concave polygons are cut better here, so the triangles may differ; their number may not.
-        assert_eq!(ours.len(), theirs.len(), "{name}");
-        let same = ours.iter().zip(&theirs).filter(|(a, b)| a == b).count();
-        assert!(same * 100 >= ours.len() * 95, "{name}: {same} of {}", ours.len());
+        assert_eq!(ours, theirs, "{name}");
+        assert!(same * 100 >= ours * 95, "{name}: {same} of {ours}");
         compared += 1;
     }
     assert!(compared >= 12, "{compared}");
@@ -153,8 +143,9 @@ fn obj_agrees_with_another_reader() {
 
 #[test]
 fn extension_is_not_needed() {
-    for (name, faces) in table() {
-        let bytes = std::fs::read(data().join(&name)).unwrap();
+    let Some(data) = data() else { return };
+    for (name, faces) in data.table() {
+        let bytes = std::fs::read(data.path(&name)).unwrap();
         let loaded = meshwright::io::read_bytes(&bytes, None, None).unwrap_or_else(|e| panic!("{name}: {e}"));
         assert_eq!(loaded.mesh.triangles.len(), faces, "{name}");
         assert_ne!(loaded.format, Format::Gltf);

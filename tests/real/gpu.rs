@@ -1,0 +1,55 @@
+//! The graphics processor against the main one.
+
+use meshwright::gpu::GpuMethod;
+use meshwright::ldi::{Operands, balance};
+
+use crate::common::gpu::{BOTH, by, check_prisms, compare, device};
+use crate::common::stages;
+use crate::data;
+
+/// Both methods at 64 voxels, and the default one at 128; half a voxel apart, too.
+#[test]
+fn all_clean_meshes_have_the_same_crossings_in_all_directions() {
+    let (Some(data), Some(device)) = (data(), device()) else { return };
+    for (name, mesh) in data.clean() {
+        let operands = Operands::new([mesh.triangles.len()]);
+        for (resolution, factor, methods) in [(64, 1, &BOTH[..]), (128, 1, &BOTH[..1]), (64, 2, &BOTH[..1])] {
+            let lattice = stages::lattice_of(&mesh, resolution);
+            let methods: Vec<_> = methods.iter().copied().map(by).collect();
+            let layers = compare(device, &format!("{name} at {resolution}"), &mesh, &lattice, factor, &methods);
+            for layers in layers {
+                let balance = balance(&layers, &operands);
+                assert!(balance.occupied > 0 && balance.unbalanced == 0, "{name}: {balance:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_open_bunny_has_the_same_crossings() {
+    let (Some(data), Some(device)) = (data(), device()) else { return };
+    let bunny = data.mesh("broken/stanford-bunny.obj");
+    for resolution in [64, 128] {
+        let lattice = stages::lattice_of(&bunny, resolution);
+        compare(device, &format!("bunny at {resolution}"), &bunny, &lattice, 1, &BOTH.map(by));
+    }
+    let lattice = stages::lattice_of(&bunny, 64);
+    compare(device, "bunny, twice", &bunny, &lattice, 2, &[by(GpuMethod::Peel)]);
+}
+
+/// What comes after the crossings is the same code, so that the solid is the same as well.
+#[test]
+fn open_and_broken_parts_have_the_same_crossings() {
+    let (Some(data), Some(device)) = (data(), device()) else { return };
+    for name in ["broken/wallhole.obj", "broken/octagonal_pocket.stl"] {
+        let mesh = data.mesh(name);
+        compare(device, name, &mesh, &stages::lattice_of(&mesh, 48), 1, &BOTH.map(by));
+    }
+}
+
+#[test]
+fn drawn_prisms_give_the_exact_field() {
+    let (Some(data), Some(device)) = (data(), device()) else { return };
+    check_prisms(device, "knot", &data.mesh("clean/quadknot.obj"));
+    check_prisms(device, "fandisk", &data.mesh("clean/fandisk.off"));
+}
