@@ -2,17 +2,20 @@
 
 use serde_json::json;
 
-use super::args::ConvertArgs;
 use super::choices::AnyFormat;
+use super::convert_args::ConvertArgs;
+use super::entries::OutputEntry;
 use super::exit::{Exit, Failure};
 use super::given::Given;
-use super::input;
-use super::output::{Target, write_verified};
+use super::keep::{self};
+use super::output::write_verified;
 use super::paint::{self, Arranged};
-use super::report::{OutputEntry, RunReport};
+use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
-use super::{grids, keep, transform, words};
+use super::target::Target;
+use super::transform::{self};
+use super::{grids, streams, words};
 use crate::io::{Loaded, Paint};
 use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
 use crate::progress::Stage;
@@ -27,7 +30,7 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     }
     let mut inputs = given.meshes;
     if let (None, Some(AnyFormat::Grid(_))) = (args.writing.out_format, AnyFormat::from_path(&args.output)) {
-        return Err(grids::no_field(&input::label(&args.input), &args.output));
+        return Err(grids::no_field(&streams::label(&args.input), &args.output));
     }
     let mut target = Target::new(&args.output, &args.writing)?;
     target.set_unit(unit);

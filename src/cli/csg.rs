@@ -1,13 +1,40 @@
 //! `csg EXPR NAME=FILE... -o OUT`.
 
+use clap::Args;
 use std::path::Path;
 
-use super::args::CsgArgs;
 use super::exit::{Exit, Failure};
 use super::report::RunReport;
 use super::session::Session;
 use super::solid::{self, Job};
+use super::solid_args::SolidArgs;
 use crate::field::language::{self, LanguageError};
+
+/// What `csg --help` ends with.
+pub const CSG_HELP: &str = "\
+Operators, from the one that binds tightest, grouping from the left as in Python:
+  a - b   inside a and not inside b
+  a & b   inside both
+  a ^ b   inside exactly one
+  a | b   inside at least one
+Parentheses group. A name is letters, digits and _, and begins with no digit.
+
+Example:
+  meshwright csg 'a - (b | c)' a=block.stl b=hole.obj c=slot.ply -o part.3mf";
+
+/// `csg EXPR NAME=FILE... -o OUT`.
+#[derive(Debug, Args)]
+pub struct CsgArgs {
+    /// The expression over the names
+    #[arg(value_name = "EXPR")]
+    pub expression: String,
+    /// A mesh and the name it goes by in the expression
+    #[arg(value_name = "NAME=FILE", required = true)]
+    pub operands: Vec<String>,
+    /// Flags of the pipeline and its output.
+    #[command(flatten)]
+    pub solid: SolidArgs,
+}
 
 /// Evaluates the expression over the named files.
 pub fn run(args: &CsgArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {

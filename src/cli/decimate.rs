@@ -5,17 +5,18 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use super::args::{CommonArgs, InputArgs, OutputArgs};
+use super::epilogue;
 use super::exit::{Exit, Failure};
 use super::input::{self, Input};
 use super::length::{Length, Scale};
-use super::output::Target;
 use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
-use super::solid;
-use super::summary::{self, Row};
+use super::shared_args::{CommonArgs, InputArgs, OutputArgs};
+use super::table::Row;
+use super::target::Target;
 use super::words::{self, UnitName};
+use super::{solid, summary};
 use crate::compare::{CompareOptions, Comparison, compare};
 use crate::decimate::{DecimateError, DecimateOptions, DecimateReport, Decimated, decimate};
 use crate::fit::rounded;
@@ -111,8 +112,7 @@ pub fn run(args: &DecimateArgs, session: &Session, report: &mut RunReport) -> Re
             Some(_) => "the deviation ended it before the number of triangles was reached".into(),
         });
     }
-    report.measure(session.start);
-    session.clear_bar();
+    epilogue::measured(session, report, None);
     say(session, report, (&done, comparison.as_ref()), unit.map(|unit| unit.to_string()).as_deref());
     Ok(if missed { Exit::Limit } else { Exit::Done })
 }
@@ -190,9 +190,5 @@ fn say(
         rows.push(("moved", format!("by {mean} in the mean, at most {most} ({share} % of the diagonal)")));
     }
     rows.extend(summary::result_rows(report, unit));
-    rows.push(summary::time(report));
-    if session.verbose {
-        rows.extend(summary::stages(report));
-    }
-    session.say(summary::table(&rows).trim_end());
+    epilogue::say(session, report, rows);
 }

@@ -1,7 +1,7 @@
 //! What a lattice may have harmed, in words: bodies that changed, and walls and gaps that it does not hold.
 
 use super::report::RunReport;
-use super::summary::Row;
+use super::table::Row;
 use super::words::{self, UnitName};
 use crate::pipeline::{LostBody, Report, ThinRegion, Topology, TopologyReport};
 

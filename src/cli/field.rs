@@ -1,25 +1,24 @@
 //! `field EXPR NAME=FILE... -o OUT`: shapes and lattices of values by an expression.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::json;
 
-use super::choices::AnyFormat;
 use super::csg::{explain, named_files};
+use super::epilogue;
 use super::exit::{Asked, Exit, Failure};
 use super::field_args::FieldArgs;
-use super::files::Made;
+use super::field_places::{Place, targets};
 use super::given::{Given, Which};
-use super::input::{self, is_stream};
 use super::length::{BandChoice, Length, Scale, Simplify};
-use super::output::Target;
 use super::report::RunReport;
 use super::result::{FrameEntry, RunResult};
 use super::session::Session;
-use super::summary::{self, Row};
+use super::table::Row;
+use super::target::Target;
 use super::words::{self, UnitName};
-use super::{dropped, limits, machine, output, sdf, solid};
+use super::{dropped, input, machine, sdf, solid, summary};
 use crate::field::Sampled;
 use crate::field::language::{self, LanguageError, Node, Value};
 use crate::fit::FitOptions;
@@ -79,12 +78,9 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     for (number, target) in targets.iter().enumerate() {
         run.frame(number, targets.len(), target, report)?;
     }
-    let broken = limits::beyond_memory(report, args.max_memory);
-    report.warnings.extend(broken.iter().cloned());
-    report.measure(session.start);
-    session.clear_bar();
+    let exit = epilogue::measured(session, report, args.max_memory);
     say(session, report, targets.len(), unit);
-    Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
+    Ok(exit)
 }
 
 /// The lattices of the expression, in one unit, by the numbers of the grids: the values of the files go over to them.
@@ -156,100 +152,22 @@ impl<'a> Texts<'a> {
     }
 }
 
-/// Where one result goes.
-enum Place {
-    Mesh(Target),
-    Grid(PathBuf, GridFormat),
-}
-
-impl Place {
-    fn path(&self) -> &Path {
-        match self {
-            Self::Mesh(target) => &target.path,
-            Self::Grid(path, _) => path,
-        }
-    }
-}
-
-/// The files that will be made.
-pub(super) fn made(args: &FieldArgs) -> Vec<Made> {
-    let frames = args.frames.unwrap_or(1);
-    let made = |number| Made { flag: "-o", path: frame_path(args, number, frames), force: args.writing.force };
-    (0..frames).map(made).collect()
-}
-
-fn frame_path(args: &FieldArgs, number: u32, frames: u32) -> PathBuf {
-    match frames > 1 && !is_stream(&args.output) {
-        true => numbered(&args.output, number, frames),
-        false => args.output.clone(),
-    }
-}
-
-/// A place for each frame; what can be known of their formats before the work begins is checked.
-fn targets(args: &FieldArgs) -> Result<Vec<Place>, Failure> {
-    let frames = args.frames.unwrap_or(1);
-    if frames > 1 && is_stream(&args.output) {
-        return Err(
-            Failure::usage("a sequence cannot go to standard output").hint("a name after -o, such as morph.ply")
-        );
-    }
-    let place = |number: u32| {
-        let path = frame_path(args, number, frames);
-        let of_grid = match args.writing.out_format.or_else(|| AnyFormat::from_path(&path)) {
-            Some(AnyFormat::Grid(format)) => {
-                output::check_extension(&path, format.name())?;
-                Some(format)
-            }
-            _ => None,
-        };
-        match of_grid {
-            Some(_) if args.paint.is_some() => {
-                Err(Failure::usage("--paint colours the vertices of a mesh, and a lattice has none")
-                    .hint("the values themselves: the expression of --paint in the place of EXPR"))
-            }
-            Some(_) if args.no_fit || args.no_collapse || args.simplify.is_some() => Err(Failure::usage(
-                "--no-fit, --no-collapse and --simplify are about the triangles of a mesh, and a lattice has none",
-            )),
-            None if args.band.is_some() => {
-                Err(Failure::usage("--band is about the values over a lattice, and a mesh has none")
-                    .hint("a name after -o that ends in .vti, .nrrd, .npy or .vdb"))
-            }
-            Some(format) => Ok(Place::Grid(path, format)),
-            None if args.writing.out_format.is_none() && AnyFormat::from_path(&path).is_none() && !is_stream(&path) => {
-                Err(Failure::usage(format!("the name {} does not tell its format", path.display())).hint(
-                    "end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or for a lattice in .vti, .nrrd, .npy or .vdb",
-                ))
-            }
-            None => Target::new(&path, &args.writing).map(Place::Mesh),
-        }
-    };
-    (0..frames).map(place).collect()
-}
-
-/// `morph.ply` as `morph_03.ply`, with as many digits as the last number has.
-fn numbered(path: &Path, number: u32, frames: u32) -> PathBuf {
-    let digits = (frames - 1).to_string().len();
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let extension = path.extension().map_or(String::new(), |extension| format!(".{}", extension.to_string_lossy()));
-    path.with_file_name(format!("{stem}_{number:0digits$}{extension}"))
-}
-
 /// What lengths are measured against; without operands only lengths in model units mean something.
 fn scale(args: &FieldArgs, unit: Option<Unit>, bounds: Option<&Bounds>) -> Result<Scale, Failure> {
     let diagonal = bounds.map_or(0.0, |bounds| bounds.diagonal());
     let base = Scale { unit, diagonal, voxel: None };
-    let voxel = match (&args.voxel, bounds) {
+    let voxel = match (&args.voxels.voxel, bounds) {
         (Some(length), _) => Some(length.resolve(&base)?),
-        (None, Some(bounds)) => Some(bounds.size().max_element() / f64::from(args.resolution)),
+        (None, Some(bounds)) => Some(bounds.size().max_element() / f64::from(args.voxels.resolution)),
         (None, None) => None,
     };
     Ok(Scale { voxel, ..base })
 }
 
 fn options(args: &FieldArgs, scale: &Scale, given: &Given, held: u64) -> Result<Options, Failure> {
-    let voxel = match (&args.voxel, scale.voxel) {
+    let voxel = match (&args.voxels.voxel, scale.voxel) {
         (Some(_), Some(h)) => VoxelSize::Length(h),
-        _ => VoxelSize::Along(args.resolution),
+        _ => VoxelSize::Along(args.voxels.resolution),
     };
     let usual = FitOptions::default();
     // Colours that vary are kept apart by the vertices. Lengths are measured when the voxel is known.
@@ -273,7 +191,7 @@ fn resolved(args: &FieldArgs, unit: Option<Unit>, options: &Options, scale: &Sca
         "paint": args.paint,
         "frames": args.frames,
         "voxel": scale.voxel,
-        "resolution": args.voxel.is_none().then_some(args.resolution),
+        "resolution": args.voxels.voxel.is_none().then_some(args.voxels.resolution),
         "band": args.band.map(|band| band.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
@@ -331,7 +249,7 @@ impl Run<'_> {
             let hint = format!("a larger voxel; the lattices that were read take {lattices} of it");
             return Failure::memory(needed.saturating_add(self.held), cap, self.args.max_memory).hint(hint);
         }
-        let asked = Asked { voxel: self.args.voxel.is_some(), memory: self.args.max_memory };
+        let asked = Asked { voxel: self.args.voxels.voxel.is_some(), memory: self.args.max_memory };
         Failure::pipeline(error, &labels, unit.as_deref(), asked)
     }
 
@@ -373,7 +291,7 @@ impl Run<'_> {
 
     fn dropped(&self, outcome: Outcome, least: f64) -> Result<(Outcome, Vec<usize>), Failure> {
         let none: [Operand<'_>; 0] = [];
-        let asked = Asked { voxel: self.args.voxel.is_some(), memory: self.args.max_memory };
+        let asked = Asked { voxel: self.args.voxels.voxel.is_some(), memory: self.args.max_memory };
         pipeline::drop_smaller(outcome, none, least, &self.session.progress)
             .map_err(|e| Failure::pipeline(&e, &self.given.labels(), None, asked))
     }
@@ -486,25 +404,12 @@ fn say(session: &Session, report: &RunReport, frames: usize, unit: Option<Unit>)
         rows.push(("frames", words::count(frames)));
     }
     rows.extend(summary::result_rows(report, unit));
-    rows.push(summary::time(report));
-    if session.verbose {
-        rows.extend(summary::stages(report));
-    }
-    session.say(summary::table(&rows).trim_end());
+    epilogue::say(session, report, rows);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn frames_get_numbers_of_one_length_before_the_extension() {
-        let at = |path: &str, number, frames| numbered(Path::new(path), number, frames).display().to_string();
-        assert_eq!(at("out/morph.ply", 3, 10), "out/morph_3.ply");
-        assert_eq!(at("morph.ply", 3, 11), "morph_03.ply");
-        assert_eq!(at("a.b.vti", 24, 101), "a.b_024.vti");
-        assert_eq!(at("plain", 0, 2), "plain_0");
-    }
 
     #[test]
     fn lengths_keep_their_sign_and_need_something_to_be_measured_by() {

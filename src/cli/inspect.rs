@@ -2,28 +2,19 @@
 
 use serde_json::json;
 
-use super::args::InspectArgs;
 use super::choices::Defect;
 use super::exit::{Asked, Exit, Failure};
 use super::given::Given;
 use super::input::{self, Input};
-use super::length::Scale;
+use super::inspect_args::InspectArgs;
 use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
-use super::{grids, summary, words};
+use super::{grids, summary, table, words};
 use crate::io::Unit;
 use crate::mesh::{Bounds, MassProperties, Overhang, ValidateOptions, Validity, validate};
-use crate::pipeline::{self, LengthsReport, Options, ThicknessReport, VoxelSize};
+use crate::pipeline::{self, LengthsReport, Options, ThicknessReport};
 use crate::progress::Stage;
-
-/// Degrees between level and upright.
-pub fn overhang_angle(text: &str) -> Result<f64, String> {
-    match text.trim_end_matches('°').parse::<f64>() {
-        Ok(degrees) if (0.0..90.0).contains(&degrees) => Ok(degrees),
-        _ => Err("an angle from 0 to less than 90 degrees is needed".into()),
-    }
-}
 
 /// Looks at one file and prints a table.
 pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
@@ -39,7 +30,7 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
     report.warnings.extend(closable(input, &validity, session)?);
     report.warnings.extend(summary::size_doubts(&input.loaded, unit));
     report.options = json!({ "unit": unit.map(|unit| unit.to_string()) });
-    report.inputs = vec![super::report::InputEntry { validity: Some(validity.clone()), ..input.entry.clone() }];
+    report.inputs = vec![super::entries::InputEntry { validity: Some(validity.clone()), ..input.entry.clone() }];
     let solid = validity.is_oriented_manifold();
     let mass = solid.then(|| MassProperties::of(&input.loaded.mesh)).flatten();
     let overhang = solid.then(|| Overhang::of(&input.loaded.mesh, args.overhang));
@@ -54,7 +45,7 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
         rows.extend(mass.iter().flat_map(|mass| mass_rows(mass, name.as_deref())));
         rows.extend(overhang.iter().map(|found| overhang_row(found, &validity, name.as_deref())));
         rows.extend(thickness.iter().flat_map(|thickness| thickness_rows(thickness, name.as_deref())));
-        super::output::write_stream(summary::table(&rows).as_bytes())?;
+        super::streams::write_stream(table::table(&rows).as_bytes())?;
     }
     report.result = Some(RunResult::Inspection { mass, overhang, thickness });
     let found: Vec<String> = failing(&args.fail_on, &validity);
@@ -64,7 +55,7 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
     Err(Failure::new(Exit::Limit, format!("{} has {}, as --fail-on asks", input.label, words::list(&found))))
 }
 
-fn mass_rows(mass: &MassProperties, unit: words::UnitName<'_>) -> Vec<summary::Row> {
+fn mass_rows(mass: &MassProperties, unit: words::UnitName<'_>) -> Vec<table::Row> {
     // Of density 1 the mass is the volume, and moments have the fifth power of a length.
     let moments = |values: [f64; 3]| {
         let values = values.map(words::number).join(" ");
@@ -82,7 +73,7 @@ fn mass_rows(mass: &MassProperties, unit: words::UnitName<'_>) -> Vec<summary::R
     ]
 }
 
-fn overhang_row(found: &Overhang, validity: &Validity, unit: words::UnitName<'_>) -> summary::Row {
+fn overhang_row(found: &Overhang, validity: &Validity, unit: words::UnitName<'_>) -> table::Row {
     let share = words::number(100.0 * found.area / validity.area.max(f64::MIN_POSITIVE));
     let degrees = words::number(found.degrees);
     let resting = words::area(found.resting, unit);
@@ -104,17 +95,14 @@ fn thickness(
 ) -> Result<ThicknessReport, Failure> {
     let mesh = &input.loaded.mesh;
     let diagonal = mesh.bounds().as_ref().map_or(0.0, Bounds::diagonal);
-    let voxel = match &args.voxel {
-        Some(length) => VoxelSize::Length(length.resolve(&Scale { unit, diagonal, voxel: None })?),
-        None => VoxelSize::Along(args.resolution),
-    };
+    let voxel = args.voxels.size(unit, diagonal)?;
     let name = unit.map(|unit| unit.to_string());
-    let asked = Asked { voxel: args.voxel.is_some(), memory: None };
+    let asked = Asked { voxel: args.voxels.voxel.is_some(), memory: None };
     let failed = |e| Failure::pipeline(&e, std::slice::from_ref(&input.label), name.as_deref(), asked);
     pipeline::thickness(mesh, &Options::new(voxel), &session.progress).map_err(failed)
 }
 
-fn thickness_rows(found: &ThicknessReport, unit: words::UnitName<'_>) -> Vec<summary::Row> {
+fn thickness_rows(found: &ThicknessReport, unit: words::UnitName<'_>) -> Vec<table::Row> {
     let described = |lengths: &LengthsReport| {
         if lengths.count == 0 {
             return "none".to_string();

@@ -76,7 +76,7 @@ impl Meter {
             bar.enable_steady_tick(Duration::from_millis(100));
         }
         let told = (!terminal && verbose && !quiet)
-            .then(|| tell_every(BETWEEN_LINES, course.clone(), super::session::eprintln_quietly));
+            .then(|| tell_every(BETWEEN_LINES, course.clone(), super::say::eprintln_quietly));
         Self { bar, course, lines: Mutex::new(told.flatten()) }
     }
 

@@ -1,17 +1,14 @@
 //! The report: one JSON object a run, the same for every verb.
 
-use std::path::Path;
 use std::time::Instant;
 
 use serde::Serialize;
 
-use super::args::CommonArgs;
+use super::entries::InputEntry;
+use super::entries::OutputEntry;
 use super::exit::{Exit, Failure};
-use super::input::is_stream;
 use super::machine::peak_memory;
 use super::result::RunResult;
-use super::session::Session;
-use crate::mesh::Validity;
 use crate::pipeline::{Report, StageTime};
 use crate::progress::Stage;
 
@@ -51,63 +48,6 @@ pub struct RunReport {
     /// Largest resident memory, where the system tells it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peak_memory_bytes: Option<u64>,
-}
-
-/// One input in the report.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct InputEntry {
-    /// The path as given.
-    pub path: String,
-    /// Its name in the expression, for `csg`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub name: Option<String>,
-    /// The format it was read as.
-    pub format: String,
-    /// Size of the file.
-    pub bytes: u64,
-    /// SHA-256 of the file.
-    pub sha256: String,
-    /// The unit the file carries.
-    pub unit: Option<String>,
-    /// Its objects.
-    pub parts: Vec<PartEntry>,
-    /// Its objects that are taken away from the others.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub negative_parts: Vec<PartEntry>,
-    /// What the reader found odd.
-    pub warnings: Vec<String>,
-    /// Its state as read.
-    pub validity: Option<Validity>,
-}
-
-/// An object within a file.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct PartEntry {
-    /// Its name.
-    pub name: String,
-    /// Its triangles.
-    pub triangles: usize,
-}
-
-/// The output in the report.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct OutputEntry {
-    /// The path as given.
-    pub path: String,
-    /// The format it was written in.
-    pub format: String,
-    /// Size of the file.
-    pub bytes: u64,
-    /// SHA-256 of the file.
-    pub sha256: String,
-    /// The unit of its numbers, where known.
-    pub unit: Option<String>,
-    /// Its state, read back from the file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub validity: Option<Validity>,
 }
 
 impl RunReport {
@@ -172,40 +112,4 @@ impl RunReport {
         }
         self.measure(start);
     }
-
-    /// Writes the report where `--json` and `--report` want it: the file first, because a stream cannot be taken back.
-    pub fn emit(&self, common: &CommonArgs, session: &Session) -> Result<(), Failure> {
-        if !common.json && common.report.is_none() {
-            return Ok(());
-        }
-        let mut text = serde_json::to_string_pretty(self)
-            .map_err(|e| Failure::internal(format!("the report cannot be written as JSON: {e}")))?;
-        text.push('\n');
-        if let Some(path) = &common.report {
-            super::output::write_side(path, text.as_bytes(), session)?;
-        }
-        if common.json {
-            super::output::write_stream(text.as_bytes())?;
-        }
-        Ok(())
-    }
-}
-
-/// Refuses two things on standard output, and a report without a name.
-pub fn check_streams<'a>(common: &CommonArgs, made: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
-    if common.json && made.into_iter().any(is_stream) {
-        return Err(Failure::usage("--json and `-o -` both want standard output")
-            .hint("--report FILE.json writes the report to a file"));
-    }
-    match &common.report {
-        Some(report) if is_stream(report) => {
-            Err(Failure::usage("--report wants a file").hint("--json writes the report to standard output"))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Refuses a report that is named as something else.
-pub fn check_name(common: &CommonArgs) -> Result<(), Failure> {
-    common.report.as_ref().map_or(Ok(()), |report| super::output::check_extension(report, "json"))
 }

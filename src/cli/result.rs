@@ -2,10 +2,7 @@
 
 use serde::Serialize;
 
-use super::devices::DeviceReport;
-use super::grids::GridEntry;
-use super::report::OutputEntry;
-use super::slice::SliceEntry;
+use super::entries::{DeviceReport, GridEntry, OutputEntry, SliceEntry};
 use crate::compare::Comparison;
 use crate::decimate::DecimateReport;
 use crate::fit::FitReport;

@@ -1,9 +1,9 @@
 //! `schema`: what a report may look like, as a JSON schema.
 
 use super::exit::{Exit, Failure};
-use super::output;
 use super::report::RunReport;
-use super::session::print_failure;
+use super::say::print_failure;
+use super::streams;
 
 /// The JSON schema (draft 2020-12) of the reports of `--json` and `--report`, made from the types that they are written from.
 fn text() -> Result<String, Failure> {
@@ -23,7 +23,7 @@ fn text() -> Result<String, Failure> {
 
 /// Prints the schema.
 pub fn run() -> Exit {
-    match text().and_then(|text| output::write_stream(text.as_bytes())) {
+    match text().and_then(|text| streams::write_stream(text.as_bytes())) {
         Ok(()) => Exit::Done,
         Err(failure) => {
             print_failure(&failure);

@@ -5,18 +5,20 @@ use std::path::Path;
 use clap::ValueEnum;
 use serde_json::json;
 
-use super::args::SdfArgs;
-use super::backend;
 use super::choices::SignChoice;
+use super::entries::OutputEntry;
+use super::epilogue;
 use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
-use super::input::{self, Input, is_stream};
+use super::input::{self, Input};
 use super::length::{BandChoice, Scale};
-use super::report::{OutputEntry, RunReport};
+use super::report::RunReport;
 use super::result::RunResult;
+use super::sdf_args::SdfArgs;
 use super::session::Session;
-use super::summary::{self, Row};
+use super::streams::{self, is_stream};
+use super::table::{self, Row};
 use super::words::{self, UnitName};
-use super::{limits, machine, output, weights};
+use super::{backend, machine, output, summary, target, weights};
 use crate::io::{DistanceSamples, GridFormat, SampleBlocks, Unit};
 use crate::lattice::Slot;
 use crate::mesh::Validity;
@@ -55,12 +57,9 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
     let fallback = outcome.report.made_by.as_ref().and_then(|made_by| made_by.fallback.as_ref());
     report.warnings.extend(fallback.map(|reason| format!("the main processor drew the slices: {reason}")));
     report.result = Some(RunResult::Distance { distance: outcome.report.clone(), output });
-    let broken = limits::beyond_memory(report, args.max_memory);
-    report.warnings.extend(broken.iter().cloned());
-    report.measure(session.start);
-    session.clear_bar();
+    let exit = epilogue::measured(session, report, args.max_memory);
     say(session, report, &outcome.report, &options, unit);
-    Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
+    Ok(exit)
 }
 
 /// The format of the output; everything about it that can be known before the work begins is checked.
@@ -68,7 +67,7 @@ fn format(args: &SdfArgs) -> Result<Option<GridFormat>, Failure> {
     let Some(path) = args.output.as_deref() else { return Ok(None) };
     let format = match (args.out_format, GridFormat::from_path(path)) {
         (Some(format), _) | (None, Some(format)) => {
-            output::check_extension(path, format.name())?;
+            target::check_extension(path, format.name())?;
             format
         }
         (None, None) if is_stream(path) => {
@@ -86,10 +85,7 @@ fn format(args: &SdfArgs) -> Result<Option<GridFormat>, Failure> {
 fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validity) -> Result<DistanceOptions, Failure> {
     let bounds = input.loaded.mesh.bounds();
     let (diagonal, longest) = bounds.map_or((0.0, 0.0), |b| (b.diagonal(), b.size().max_element()));
-    let voxel = match &args.voxel {
-        Some(length) => VoxelSize::Length(length.resolve(&Scale { unit, diagonal, voxel: None })?),
-        None => VoxelSize::Along(args.resolution),
-    };
+    let voxel = args.voxels.size(unit, diagonal)?;
     let spacing = voxel.spacing(longest);
     let band = match args.band {
         BandChoice::Full => None,
@@ -149,7 +145,7 @@ fn resolved(
     json!({
         "resolution": resolution,
         "voxel": voxel,
-        "voxel_as_given": args.voxel.map(|length| length.to_string()),
+        "voxel_as_given": args.voxels.voxel.map(|length| length.to_string()),
         "band": options.band,
         "band_as_given": args.band.to_string(),
         "method": options.method,
@@ -200,7 +196,7 @@ fn failure(
             Failure::memory(*needed, *allowed, args.max_memory).hint(smaller(input, options, *allowed))
         }
         _ => {
-            let asked = Asked { voxel: args.voxel.is_some(), memory: args.max_memory };
+            let asked = Asked { voxel: args.voxels.voxel.is_some(), memory: args.max_memory };
             Failure::pipeline(error, std::slice::from_ref(&input.label), unit.as_deref(), asked)
         }
     }
@@ -222,7 +218,7 @@ fn plan(
     report.result = Some(RunResult::DistancePlan { plan });
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
-        output::write_stream(summary::table(&plan_rows(&plan, unit.as_deref())).as_bytes())?;
+        streams::write_stream(table::table(&plan_rows(&plan, unit.as_deref())).as_bytes())?;
     }
     match options.max_memory {
         Some(cap) if plan.memory > cap => {
@@ -328,9 +324,5 @@ fn say(
         let range = words::with_unit(&format!("{low} to {high}"), unit);
         rows.push(("result", format!("{}: {range}, negative inside; {}", output.path, words::bytes(output.bytes))));
     }
-    rows.push(summary::time(report));
-    if session.verbose {
-        rows.extend(summary::stages(report));
-    }
-    session.say(summary::table(&rows).trim_end());
+    epilogue::say(session, report, rows);
 }

@@ -5,17 +5,20 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::args::SolidArgs;
 use super::change::{self, Change, Changed};
+use super::entries::OutputEntry;
+use super::epilogue;
 use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
 use super::input::{self, Input};
 use super::length::{Scale, Simplify};
-use super::output::{Target, write_verified};
+use super::output::write_verified;
 use super::paint::{self, Arranged};
-use super::report::{OutputEntry, RunReport};
+use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
-use super::{backend, doubts, keep, limits, machine, map, negative, summary, weights, words};
+use super::solid_args::SolidArgs;
+use super::target::Target;
+use super::{backend, doubts, keep, limits, machine, map, negative, summary, table, weights, words};
 use crate::fit::{FitOptions, rounded};
 use crate::io::{Colours, Format, Loaded, Paint, Unit};
 use crate::ldi::Expression;
@@ -72,10 +75,7 @@ fn options(
 ) -> Result<(Options, Scale), Failure> {
     let bounds = inputs.iter().filter_map(|input| input.loaded.mesh.bounds()).reduce(|a, b| a.union(&b));
     let diagonal = bounds.as_ref().map_or(0.0, Bounds::diagonal);
-    let voxel = match &args.voxel {
-        Some(length) => VoxelSize::Length(length.resolve(&Scale { unit, diagonal, voxel: None })?),
-        None => VoxelSize::Along(args.resolution),
-    };
+    let voxel = args.voxels.size(unit, diagonal)?;
     let longest = bounds.map_or(0.0, |b| b.size().max_element());
     let scale = Scale { unit, diagonal, voxel: Some(voxel.spacing(longest)) };
     let options = Options {
@@ -116,8 +116,8 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
     json!({
         "resolution": resolution,
         "voxel": voxel,
-        "preset": super::preset::words(args),
-        "voxel_as_given": args.voxel.map(|length| length.to_string()),
+        "preset": args.preset_in_words(),
+        "voxel_as_given": args.voxels.voxel.map(|length| length.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
         "vote": options.vote,
@@ -137,7 +137,12 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
 pub(super) fn failure(error: &impl Advice, inputs: &[Input], unit: Option<Unit>, args: &SolidArgs) -> Failure {
     let labels: Vec<String> = inputs.iter().map(|input| input.label.clone()).collect();
     let unit = unit.map(|unit| unit.to_string());
-    Failure::pipeline(error, &labels, unit.as_deref(), Asked { voxel: args.voxel.is_some(), memory: args.max_memory })
+    Failure::pipeline(
+        error,
+        &labels,
+        unit.as_deref(),
+        Asked { voxel: args.voxels.voxel.is_some(), memory: args.max_memory },
+    )
 }
 
 fn plan(
@@ -161,8 +166,8 @@ fn plan(
     report.result = Some(RunResult::Plan { plan });
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
-        let text = summary::table(&summary::plan(&plan, unit.as_deref()));
-        super::output::write_stream(text.as_bytes())?;
+        let text = table::table(&summary::plan(&plan, unit.as_deref()));
+        super::streams::write_stream(text.as_bytes())?;
     }
     match options.max_memory {
         Some(cap) if plan.memory > cap => {
@@ -227,11 +232,10 @@ fn make(
         let written = write(&outcome.solid, paint, target, session, report)?;
         report.written(written);
     }
-    let beyond: Vec<String> =
-        limits::guessed(report).into_iter().chain(limits::beyond_memory(report, args.max_memory)).collect();
-    report.warnings.extend(beyond.iter().chain(lost.iter().filter(|_| !withheld)).cloned());
-    report.measure(session.start);
-    session.clear_bar();
+    let guessed = limits::guessed(report);
+    report.warnings.extend(guessed.iter().cloned());
+    let exit = epilogue::measured(session, report, args.max_memory);
+    report.warnings.extend(lost.iter().filter(|_| !withheld).cloned());
     let name = unit.map(|unit| unit.to_string());
     summary::say(session, report, name.as_deref());
     change::list(job.change, report, &args.common, name.as_deref())?;
@@ -239,7 +243,7 @@ fn make(
         session.speak();
         return Err(keep::withheld(&lost, args.output.as_deref(), &doubts::better(report, name.as_deref())));
     }
-    Ok(if beyond.is_empty() && lost.is_empty() { Exit::Done } else { Exit::Limit })
+    Ok(if guessed.is_none() && lost.is_empty() { exit } else { Exit::Limit })
 }
 
 /// Writes the result and judges the written file.

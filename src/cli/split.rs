@@ -6,18 +6,22 @@ use clap::Args;
 use glam::DVec3;
 use serde_json::json;
 
-use super::args::{CommonArgs, InputArgs, OutputArgs};
 use super::choices::AnyFormat;
 use super::convert::{check_close, losses, state};
+use super::entries::OutputEntry;
 use super::exit::{Exit, Failure};
 use super::files::{self, Made};
-use super::input::{self, Input, is_stream};
-use super::output::{Target, write_verified};
+use super::input::{self, Input};
+use super::output::write_verified;
 use super::paint::{self, Arranged};
-use super::report::{OutputEntry, RunReport};
+use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
-use super::summary::{self, Row};
+use super::shared_args::{CommonArgs, InputArgs, OutputArgs};
+use super::streams::is_stream;
+use super::summary;
+use super::table::{self, Row};
+use super::target::Target;
 use super::words::{self, UnitName};
 use crate::io::{Colours, Format, Loaded, Paint, Part, Unit, WriteOptions};
 use crate::ldi::Operands;
@@ -266,5 +270,5 @@ fn say(session: &Session, report: &RunReport, (pieces, outputs): (&[Piece], &[Ou
         rows.push(("result", format!("and {} more", words::count(pieces.len() - LISTED))));
     }
     rows.push(summary::time(report));
-    session.say(summary::table(&rows).trim_end());
+    session.say(table::table(&rows).trim_end());
 }
