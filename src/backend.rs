@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::lattice::{Grid, Lattice};
+use crate::lattice::{DistanceField, Lattice};
 use crate::ldi::{Layers, ldis};
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
@@ -86,7 +86,7 @@ pub(crate) fn prism(
     options: &ExactOptions,
     backend: Backend,
     progress: &Progress,
-) -> Result<(Grid<f32>, BackendReport), PrismError> {
+) -> Result<(DistanceField, BackendReport), PrismError> {
     let fallback = match backend {
         Backend::Cpu => None,
         Backend::Gpu => return gpu::prism(mesh, lattice, options, progress),
@@ -169,7 +169,7 @@ mod gpu {
         lattice: &Lattice,
         options: &ExactOptions,
         progress: &Progress,
-    ) -> Result<(Grid<f32>, BackendReport), PrismError> {
+    ) -> Result<(DistanceField, BackendReport), PrismError> {
         let device = Device::open(&Wanted::Any).map_err(refused)?;
         prism_on(&device, mesh, lattice, options, progress)
     }
@@ -180,7 +180,7 @@ mod gpu {
         lattice: &Lattice,
         options: &ExactOptions,
         progress: &Progress,
-    ) -> Result<Option<(Grid<f32>, BackendReport)>, PrismError> {
+    ) -> Result<Option<(DistanceField, BackendReport)>, PrismError> {
         match Device::open(&Wanted::Hardware) {
             Ok(device) => prism_on(&device, mesh, lattice, options, progress).map(Some),
             Err(GpuError::NoAdapter { .. }) => Ok(None),
@@ -194,7 +194,7 @@ mod gpu {
         lattice: &Lattice,
         options: &ExactOptions,
         progress: &Progress,
-    ) -> Result<(Grid<f32>, BackendReport), PrismError> {
+    ) -> Result<(DistanceField, BackendReport), PrismError> {
         let (field, report) = gpu::prism(device, mesh, lattice, options, false, progress).map_err(refused)?;
         Ok((field, made_by(device, &report)))
     }
@@ -290,7 +290,7 @@ mod gpu {
         _: &Lattice,
         _: &ExactOptions,
         _: &Progress,
-    ) -> Result<(Grid<f32>, BackendReport), PrismError> {
+    ) -> Result<(DistanceField, BackendReport), PrismError> {
         Err(PrismError::Gpu { reason: "this build has no graphics backend".into(), hint: "--backend cpu".into() })
     }
 
@@ -299,7 +299,7 @@ mod gpu {
         _: &Lattice,
         _: &ExactOptions,
         _: &Progress,
-    ) -> Result<Option<(Grid<f32>, BackendReport)>, PrismError> {
+    ) -> Result<Option<(DistanceField, BackendReport)>, PrismError> {
         Ok(None)
     }
 }

@@ -94,10 +94,10 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
         BandChoice::Within(length) => Some(length.resolve(&Scale { unit, diagonal, voxel: Some(spacing) })?),
     };
     let method = args.method.into();
-    let closed = matches!(method, DistanceMethod::Characteristics | DistanceMethod::Prism);
+    let closed = DistanceMethod::is_for_closed(method);
     backend::check_built(args.backend)?;
     if closed {
-        closed_only(args, validity)?;
+        pseudonormals_only(args)?;
     }
     let sign = match args.sign {
         Some(SignChoice::Pseudonormal | SignChoice::Winding | SignChoice::Levels)
@@ -107,28 +107,20 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
                 .hint("--method exact takes any --sign"));
         }
         Some(sign) => sign.into(),
-        None if closed => DistanceSign::Pseudonormal,
-        None if validity.is_valid() && method == DistanceMethod::Exact => DistanceSign::Pseudonormal,
-        None => DistanceSign::Votes,
+        None => DistanceSign::suited(validity, method),
     };
     let (orient, max_memory) = (args.orient.into(), machine::memory_cap(args.max_memory));
     Ok(DistanceOptions { voxel, band, method, sign, orient, max_memory, backend: args.backend.into() })
 }
 
-/// Refuses what characteristics and prisms are not for.
-fn closed_only(args: &SdfArgs, validity: &Validity) -> Result<(), Failure> {
+/// Refuses another sign for what goes by pseudonormals.
+fn pseudonormals_only(args: &SdfArgs) -> Result<(), Failure> {
     let name = args.method.to_possible_value().map_or_else(String::new, |value| value.get_name().to_string());
-    if !matches!(args.sign, None | Some(SignChoice::Pseudonormal)) {
-        return Err(Failure::usage(format!("--method {name} goes by pseudonormals; --sign cannot change that"))
-            .hint("--method exact takes any --sign"));
+    if matches!(args.sign, None | Some(SignChoice::Pseudonormal)) {
+        return Ok(());
     }
-    if !validity.is_oriented_manifold() {
-        let problems = validity.problems();
-        let why = problems.first().map_or("It is not.", String::as_str);
-        return Err(Failure::usage(format!("--method {name} needs a closed, oriented surface. {why}"))
-            .hint("repair it first (`meshwright repair`), or --method exact"));
-    }
-    Ok(())
+    Err(Failure::usage(format!("--method {name} goes by pseudonormals; --sign cannot change that"))
+        .hint("--method exact takes any --sign"))
 }
 
 /// The options as the report states them, after defaults.
@@ -252,7 +244,7 @@ fn samples<'a>(
     plane: &'a (dyn Fn(usize, &mut Vec<f32>) + Sync),
     blocks: &'a SampleBlocks<'a>,
 ) -> DistanceSamples<'a> {
-    let lattice = &outcome.lattice;
+    let lattice = &outcome.field.lattice;
     DistanceSamples {
         origin: lattice.origin,
         spacing: lattice.h,
@@ -274,10 +266,10 @@ pub(super) fn write(
     report: &mut RunReport,
 ) -> Result<OutputEntry, Failure> {
     let plane = |z: usize, values: &mut Vec<f32>| outcome.plane(z, values);
-    let (bricks, h) = (&outcome.field.bricks, outcome.lattice.h);
+    let (field, bricks) = (&outcome.field, &outcome.field.grid.bricks);
     let blocks = SampleBlocks {
         stored: bricks.active(),
-        values: &|n| outcome.field.values[n].map(|value| (f64::from(value) * h) as f32),
+        values: &|n| field.grid.values[n].map(|value| field.length(value) as f32),
         inside: &|brick| bricks.slot(brick) == Slot::Inside,
     };
     let samples = samples(outcome, unit, &plane, &blocks);

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use glam::DVec3;
 use serde_json::json;
 
 use super::choices::AnyFormat;
@@ -25,7 +24,7 @@ use super::target::Target;
 use super::words::{self, UnitName};
 use crate::io::{Colours, Format, Loaded, Paint, Part, Unit, WriteOptions};
 use crate::ldi::Operands;
-use crate::mesh::{TriMesh, ValidateOptions, validate};
+use crate::mesh::{Submesh, ValidateOptions, validate};
 use crate::progress::Stage;
 use crate::shells::{bodies, shells};
 
@@ -182,15 +181,7 @@ fn pieces(input: &Input, session: &Session) -> Result<Vec<Piece>, Failure> {
 /// Some triangles of a file, in their order, with their colours.
 fn part_of(loaded: &Loaded, triangles: &[u32]) -> Loaded {
     let mesh = &loaded.mesh;
-    let mut vertices: Vec<u32> = triangles.iter().flat_map(|&t| mesh.triangles[t as usize]).collect();
-    vertices.sort_unstable();
-    vertices.dedup();
-    let number = |v: u32| vertices.partition_point(|&other| other < v) as u32;
-    let position = |&v: &u32| -> DVec3 { mesh.positions[v as usize] };
-    let part = TriMesh {
-        positions: vertices.iter().map(position).collect(),
-        triangles: triangles.iter().map(|&t| mesh.triangles[t as usize].map(number)).collect(),
-    };
+    let Submesh { mesh: part, vertices } = mesh.submesh(triangles);
     let colours = loaded.colours.as_ref().map(|colours| match colours {
         Colours::Faces(_) => Colours::Faces(triangles.iter().map(|&t| colours.corners(mesh, t as usize)[0]).collect()),
         Colours::Vertices(list) => {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::surface::{Frame, Surface};
+use super::surface::{Frame, ScaledFaces};
 use crate::mesh::ClosestTree;
 use crate::progress::{Progress, Stopped};
 
@@ -16,17 +16,17 @@ const CHUNK: usize = 1 << 12;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Distances {
-    /// Mean.
+    /// The mean distance.
     pub mean: f64,
-    /// Root of the mean square.
+    /// The root of the mean square of the distances.
     pub rms: f64,
     /// What 99 of 100 samples do not exceed.
     pub p99: f64,
-    /// Largest.
+    /// The largest distance.
     pub max: f64,
-    /// Where the largest is, on the mesh it is measured from.
+    /// The place of the largest distance, on the mesh it is measured from.
     pub max_at: [f64; 3],
-    /// The first four, relative to the diagonal of A's bounding box.
+    /// The mean, RMS, p99 and largest distance relative to the diagonal of A's bounding box.
     pub relative: Relative,
 }
 
@@ -35,15 +35,15 @@ pub struct Distances {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Symmetric {
-    /// Mean.
+    /// The mean distance.
     pub mean: f64,
-    /// Root of the mean square.
+    /// The root of the mean square of the distances.
     pub rms: f64,
-    /// The larger p99.
+    /// The larger of both p99.
     pub p99: f64,
     /// The largest distance of all: the Hausdorff distance, as far as samples and vertices can tell it.
     pub max: f64,
-    /// The same, relative to the diagonal of A's bounding box.
+    /// All four, relative to the diagonal of A's bounding box.
     pub relative: Relative,
 }
 
@@ -51,13 +51,13 @@ pub struct Symmetric {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Relative {
-    /// Mean.
+    /// The mean distance.
     pub mean: f64,
-    /// Root of the mean square.
+    /// The root of the mean square of the distances.
     pub rms: f64,
-    /// 99th percentile.
+    /// What 99 of 100 samples do not exceed.
     pub p99: f64,
-    /// Largest.
+    /// The largest distance.
     pub max: f64,
 }
 
@@ -106,7 +106,7 @@ impl Scaled {
 
 /// The distances from `count` samples and all vertices of `from` to the surface in `to`.
 pub(super) fn measure(
-    from: &Surface,
+    from: &ScaledFaces,
     to: &ClosestTree<[DVec3; 3]>,
     count: usize,
     progress: &Progress,

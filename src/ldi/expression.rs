@@ -5,13 +5,13 @@
 pub enum Expression {
     /// The solid of one operand.
     Operand(usize),
-    /// Inside at least one; empty list: nothing.
+    /// All points inside at least one of these; an empty list is nothing.
     Union(Vec<Expression>),
-    /// Inside all of them; empty list: nothing.
+    /// All points inside each of these; an empty list is nothing.
     Intersection(Vec<Expression>),
-    /// Inside the first and not inside the second.
+    /// All points inside the first and not inside the second.
     Difference(Box<Expression>, Box<Expression>),
-    /// Inside exactly one of the two.
+    /// All points inside exactly one of the two.
     SymmetricDifference(Box<Expression>, Box<Expression>),
 }
 

@@ -8,16 +8,20 @@
 //! [`canals`] lists what a closing would fill, and lets it fill only some of that.
 
 mod balls;
+mod body;
 mod canals;
 mod closed;
 mod offset;
+mod region;
 mod remains;
 mod thin;
 
 pub use balls::{Balls, Centres, places};
-pub use canals::{Canal, CanalKind, Canals, Region, canals};
+pub use body::Body;
+pub use canals::{Canal, CanalKind, Canals, canals};
 pub use closed::{Closed, Reached, closed, reached};
-pub use offset::{Body, Offset, offset};
+pub use offset::{Offset, offset};
+pub use region::Region;
 pub use remains::Remain;
 pub use thin::middles;
 
@@ -42,7 +46,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// Offsets that it takes.
+    /// The number of offsets that the operation takes.
     pub fn offsets(self) -> u32 {
         match self {
             Self::Dilate | Self::Erode => 1,

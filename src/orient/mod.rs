@@ -17,7 +17,7 @@ pub enum OrientMode {
     /// Make each edge-connected patch consistent and decide its side by the LDIs.
     #[default]
     Auto,
-    /// Trust the file.
+    /// Take the triangles as they are: the file is trusted.
     Keep,
 }
 
@@ -25,9 +25,9 @@ pub enum OrientMode {
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OrientReport {
-    /// Triangles without area or with a repeated vertex, dropped.
+    /// Triangles that were dropped because they have no area or a repeated vertex.
     pub degenerate_dropped: usize,
-    /// Exact repetitions of another triangle, dropped.
+    /// Triangles that were dropped because they repeat another one.
     pub duplicates_dropped: usize,
     /// Triangles that were present in both orientations; one copy was kept.
     pub both_sided: usize,
@@ -37,6 +37,6 @@ pub struct OrientReport {
     pub flipped_in_patches: usize,
     /// Patches turned over as a whole, by the vote of the rays or, where they are shells that stand as they are, by winding numbers.
     pub flipped_patches: usize,
-    /// Triangles in these patches.
+    /// Triangles in the patches that were turned over as a whole.
     pub flipped_by_rays: usize,
 }

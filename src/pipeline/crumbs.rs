@@ -150,17 +150,9 @@ fn take<T: Copy>(mesh: &mut TriMesh, of_triangles: &mut Vec<T>, found: &Shells, 
     if dropped.surfaces == 0 {
         return dropped;
     }
-    let kept: Vec<usize> = (0..mesh.triangles.len()).filter(|&t| stays[found.of[t] as usize]).collect();
-    *of_triangles = kept.iter().map(|&t| of_triangles[t]).collect();
-    let triangles: Vec<[u32; 3]> = kept.iter().map(|&t| mesh.triangles[t]).collect();
-    let mut number = vec![u32::MAX; mesh.positions.len()];
-    triangles.iter().flatten().for_each(|&v| number[v as usize] = 0);
-    let mut positions = Vec::new();
-    for (v, number) in number.iter_mut().enumerate().filter(|(_, number)| **number == 0) {
-        *number = positions.len() as u32;
-        positions.push(mesh.positions[v]);
-    }
-    mesh.positions = positions;
-    mesh.triangles = triangles.into_iter().map(|t| t.map(|v| number[v as usize])).collect();
+    let triangles = 0..mesh.triangles.len() as u32;
+    let kept: Vec<u32> = triangles.filter(|&t| stays[found.of[t as usize] as usize]).collect();
+    *of_triangles = kept.iter().map(|&t| of_triangles[t as usize]).collect();
+    *mesh = mesh.submesh(&kept).mesh;
     dropped
 }

@@ -11,9 +11,9 @@ use super::stages::Stages;
 use super::{LatticeError, LimitError, NothingEnclosed, StageTime, VoxelSize, sizing};
 use crate::backend::{self, Backend, BackendReport, PrismError};
 use crate::digits;
-use crate::lattice::{BRICK, Grid, Lattice, Slot};
+use crate::lattice::{BRICK, DistanceField, Lattice, Slot};
 use crate::ldi::{Expression, MAX_VOXELS};
-use crate::mesh::TriMesh;
+use crate::mesh::{IndexError, TriMesh, ValidateOptions, Validity, validate};
 use crate::orient::{OrientMode, OrientReport};
 use crate::progress::{Progress, Stage, Stopped};
 use crate::sdf::exact::{self, Band, ExactError, ExactOptions, Sign};
@@ -65,6 +65,31 @@ pub enum DistanceSign {
     Levels,
 }
 
+impl DistanceMethod {
+    /// As people call it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Exact => "exact distance",
+            Self::Characteristics => "characteristics",
+            Self::Prism => "prisms",
+            Self::Robust => "votes",
+        }
+    }
+
+    /// Whether it is for closed, oriented surfaces only.
+    pub fn is_for_closed(self) -> bool {
+        matches!(self, Self::Characteristics | Self::Prism)
+    }
+}
+
+impl DistanceSign {
+    /// The sign that suits a mesh of this state: pseudonormals where they are exact, votes where the mesh is a soup.
+    pub fn suited(validity: &Validity, method: DistanceMethod) -> Self {
+        let exact = validity.is_valid() && method == DistanceMethod::Exact;
+        if exact || method.is_for_closed() { Self::Pseudonormal } else { Self::Votes }
+    }
+}
+
 /// Options of [`distance`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DistanceOptions {
@@ -86,6 +111,20 @@ pub struct DistanceOptions {
 }
 
 impl DistanceOptions {
+    /// The exact distance over the whole lattice, with votes for the sign: right for any mesh. [`DistanceSign::suited`] chooses what is faster
+    /// where it is right as well.
+    pub fn new(voxel: VoxelSize) -> Self {
+        Self {
+            voxel,
+            band: None,
+            method: DistanceMethod::Exact,
+            sign: DistanceSign::Votes,
+            backend: Backend::default(),
+            orient: OrientMode::Auto,
+            max_memory: None,
+        }
+    }
+
     /// Whether rays vote.
     fn votes(&self) -> bool {
         match self.method {
@@ -99,10 +138,8 @@ impl DistanceOptions {
 /// A field and how it came about.
 #[derive(Debug, Clone)]
 pub struct DistanceOutcome {
-    /// Signed distance in h, negative inside.
-    pub field: Grid<f32>,
-    /// The lattice, which reaches as far around the mesh as the band.
-    pub lattice: Lattice,
+    /// The signed distance, on a lattice that reaches as far around the mesh as the band.
+    pub field: DistanceField,
     /// What was found and done.
     pub report: DistanceReport,
 }
@@ -163,6 +200,17 @@ pub enum DistanceError {
     /// There is no triangle with an area.
     #[error("there is no triangle with an area")]
     Empty,
+    /// A triangle refers to a vertex that is not there.
+    #[error(transparent)]
+    Index(#[from] IndexError),
+    /// The method needs a closed, oriented surface, and this is none.
+    #[error("a field by {} needs a closed, oriented surface. {problem}", method.word())]
+    NotClosed {
+        /// The method.
+        method: DistanceMethod,
+        /// What is wrong with the surface, as a sentence.
+        problem: String,
+    },
     /// The voxel size, or the band, cannot be used with these coordinates.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
@@ -203,6 +251,8 @@ pub fn distance(
     options: &DistanceOptions,
     progress: &Progress,
 ) -> Result<DistanceOutcome, DistanceError> {
+    input.check()?;
+    check_closed(input, options.method, progress)?;
     let frame = input.bounds().map_or_else(Frame::default, |bounds| Frame::around(&bounds));
     let input = &*frame.local(input);
     let (lattice, band) = place(input, options)?;
@@ -231,10 +281,25 @@ pub fn distance(
         _ => run.of_soup(input, &mut stages, &mut report)?,
     };
     report.stages = stages.finish();
-    let mut outcome = DistanceOutcome { field, lattice: frame.global_lattice(lattice), report };
+    let mut outcome =
+        DistanceOutcome { field: DistanceField { lattice: frame.global_lattice(lattice), ..field }, report };
     outcome.report.vote.iter_mut().for_each(|vote| frame.votes(vote));
     outcome.describe(band);
     Ok(outcome)
+}
+
+/// Refuses a surface that the method would give a wrong field for.
+fn check_closed(input: &TriMesh, method: DistanceMethod, progress: &Progress) -> Result<(), DistanceError> {
+    if !method.is_for_closed() {
+        return Ok(());
+    }
+    let look = ValidateOptions { self_intersections: false, weld: true };
+    let validity = validate(input, &look, progress)?;
+    if validity.is_oriented_manifold() {
+        return Ok(());
+    }
+    let problem = validity.problems().first().map_or_else(|| "It is not.".into(), String::clone);
+    Err(DistanceError::NotClosed { method, problem })
 }
 
 /// The lattice, grown by the band, and the band in h.
@@ -328,17 +393,17 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<Grid<f32>, DistanceError> {
+    fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<DistanceField, DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
         Ok(exact::exact(mesh, &self.lattice, sign, &options, self.progress)?)
     }
 
-    fn characteristics(&self, mesh: &TriMesh) -> Result<Grid<f32>, DistanceError> {
+    fn characteristics(&self, mesh: &TriMesh) -> Result<DistanceField, DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
         Ok(characteristics::characteristics(mesh, &self.lattice, &options, self.progress)?)
     }
 
-    fn prism(&self, mesh: &TriMesh) -> Result<(Grid<f32>, BackendReport), DistanceError> {
+    fn prism(&self, mesh: &TriMesh) -> Result<(DistanceField, BackendReport), DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
         let made = backend::prism(mesh, &self.lattice, &options, self.options.backend, self.progress);
         made.map_err(|error| match error {
@@ -353,7 +418,7 @@ impl Run<'_> {
         input: &TriMesh,
         stages: &mut Stages<'_>,
         report: &mut DistanceReport,
-    ) -> Result<Grid<f32>, DistanceError> {
+    ) -> Result<DistanceField, DistanceError> {
         let (progress, orient, lattice) = (self.progress, self.options.orient, &self.lattice);
         stages.begin(Stage::Orient)?;
         let soup = Soup::of(&[input], orient, progress)?;
@@ -388,7 +453,8 @@ impl Run<'_> {
                 self.exact(&survey.soup.mesh, Sign::Votes(&votes))
             }
             DistanceMethod::Robust => {
-                let near = sdf::robust(&survey.spans, &survey.planes(), &votes, &RobustOptions::default(), progress)?;
+                let (options, planes) = (RobustOptions::default(), survey.planes());
+                let near = sdf::robust(&survey.spans, &planes, (&votes, lattice), &options, progress)?;
                 survey.spans.clear();
                 Ok(self.march(&near)?)
             }
@@ -396,17 +462,17 @@ impl Run<'_> {
     }
 
     /// Extends the robust field to the band, or to the whole lattice.
-    fn march(&self, near: &Grid<f32>) -> Result<Grid<f32>, Stopped> {
+    fn march(&self, near: &DistanceField) -> Result<DistanceField, Stopped> {
         let reach = match self.band {
             Band::Within(h) => h as f32,
             Band::Full => self.lattice.dims.as_vec3().length() + BRICK as f32,
         };
-        let mut field = sdf::march(near, &self.lattice, reach, self.progress)?;
+        let mut field = sdf::march(near, reach, self.progress)?;
         if let Band::Within(h) = self.band {
             // Marching goes a little beyond narrow bands.
             let band = h as f32;
-            field.values.par_iter_mut().flatten().for_each(|value| *value = value.clamp(-band, band));
-            (field.inside, field.outside) = (-band, band);
+            field.grid.values.par_iter_mut().flatten().for_each(|value| *value = value.clamp(-band, band));
+            (field.grid.inside, field.grid.outside) = (-band, band);
         }
         Ok(field)
     }
@@ -415,39 +481,40 @@ impl Run<'_> {
 impl DistanceOutcome {
     /// Appends the values of plane `z` of the lattice, model units, x fastest, then y.
     pub fn plane(&self, z: usize, values: &mut Vec<f32>) {
-        let [width, height] = [self.lattice.dims.x as usize, self.lattice.dims.y as usize];
+        let grid = &self.field.grid;
+        let [width, height] = [self.field.lattice.dims.x as usize, self.field.lattice.dims.y as usize];
         let start = values.len();
         values.resize(start + width * height, 0.0);
-        let (z, layer, h) = (z as i32 / BRICK, z % BRICK as usize, self.lattice.h);
-        let scaled = |value: f32| (f64::from(value) * h) as f32;
+        let (z, layer) = (z as i32 / BRICK, z % BRICK as usize);
+        let scaled = |value: f32| self.field.length(value) as f32;
         for (y, rows) in values[start..].chunks_mut(8 * width).enumerate() {
             for x in 0..width.div_ceil(8) {
-                let slot = self.field.bricks.slot(IVec3::new(x as i32, y as i32, z));
+                let slot = grid.bricks.slot(IVec3::new(x as i32, y as i32, z));
                 for (row, values) in rows.chunks_mut(width).enumerate() {
                     let values = &mut values[8 * x..width.min(8 * x + 8)];
                     match slot {
                         Slot::Active(n) => {
-                            let brick = &self.field.values[n as usize][64 * layer + 8 * row..];
+                            let brick = &grid.values[n as usize][64 * layer + 8 * row..];
                             values.iter_mut().zip(brick).for_each(|(value, &from)| *value = scaled(from));
                         }
-                        Slot::Inside => values.fill(scaled(self.field.inside)),
-                        Slot::Outside => values.fill(scaled(self.field.outside)),
+                        Slot::Inside => values.fill(scaled(grid.inside)),
+                        Slot::Outside => values.fill(scaled(grid.outside)),
                     }
                 }
             }
         }
     }
 
-    /// A field in h over `lattice`, with its report filled in.
-    pub(super) fn described(field: Grid<f32>, lattice: Lattice, band: Band, report: DistanceReport) -> Self {
-        let mut outcome = Self { field, lattice, report };
+    /// A field with its report filled in.
+    pub(super) fn described(field: DistanceField, band: Band, report: DistanceReport) -> Self {
+        let mut outcome = Self { field, report };
         outcome.describe(band);
         outcome
     }
 
     /// Fills in what the report says of the field.
     fn describe(&mut self, band: Band) {
-        let planes = (0..self.lattice.dims.z as usize).into_par_iter();
+        let planes = (0..self.field.lattice.dims.z as usize).into_par_iter();
         let of_plane = |z| {
             let mut values = Vec::new();
             self.plane(z, &mut values);
@@ -457,12 +524,12 @@ impl DistanceOutcome {
                 .fold(start, |(inside, [low, high]), &v| (inside + usize::from(v < 0.0), [low.min(v), high.max(v)]))
         };
         let parts: Vec<(usize, [f32; 2])> = planes.map(of_plane).collect();
-        let report = &mut self.report;
-        report.origin = self.lattice.origin.to_array();
-        report.voxel = self.lattice.h;
-        report.dims = self.lattice.dims.to_array();
-        report.band = if let Band::Within(h) = band { Some(h * self.lattice.h) } else { None };
-        report.stored = self.field.values.len() * crate::lattice::BRICK_VOXELS;
+        let (report, lattice) = (&mut self.report, &self.field.lattice);
+        report.origin = lattice.origin.to_array();
+        report.voxel = lattice.h;
+        report.dims = lattice.dims.to_array();
+        report.band = if let Band::Within(h) = band { Some(h * lattice.h) } else { None };
+        report.stored = self.field.grid.values.len() * crate::lattice::BRICK_VOXELS;
         report.inside = parts.iter().map(|part| part.0).sum();
         let range = parts.iter().map(|part| part.1);
         report.range = range.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], [low, high]| [a.min(low), b.max(high)]);

@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::plan::{Offsets, area, check_limits};
 use super::stages::Stages;
 use super::{Changed, MorphologyError, Report, SurfaceOptions, VoxelSize, refine, sizing};
-use crate::fit::{Facets, FitOptions, FitReport, Sides, Surface, Wanted, fit};
+use crate::fit::{Facets, FitOptions, FitReport, Sides, Surface, TargetDistance, fit};
 use crate::lattice::Lattice;
 use crate::ldi::Evidence;
 use crate::mesh::{Bounds, Solid, TriMesh, ValidateOptions, validate};
@@ -219,7 +219,7 @@ impl Job<'_> {
     fn fitted(
         &self,
         (offset, lattice): (Offset, &Lattice),
-        (source, off): (&TriMesh, Wanted<'_>),
+        (source, off): (&TriMesh, TargetDistance<'_>),
         evidence: Evidence,
         options: Option<FitOptions>,
         thinner_than: Option<f64>,
@@ -231,7 +231,7 @@ impl Job<'_> {
             let surface = Surface::new(TriMesh::default(), Vec::new());
             return Ok(Made { surface, own: Vec::new(), fit: None, h: self.h, too_thin: offset.remains });
         }
-        let facets = Facets::new(source, offset.planes).with_wanted(off);
+        let facets = Facets::new(source, offset.planes).with_target(off);
         let mut surface = refine::merged(offset.contour, &facets, lattice, self.surface, self.progress)?;
         let mut fitted = None;
         if let Some(options) = options {
@@ -239,7 +239,7 @@ impl Job<'_> {
             let (fit, report) = fit(&surface, &facets, &evidence, self.h, &options, self.progress)?;
             (surface, fitted) = (fit, Some(report));
         }
-        let own = |t: u32| surface.facet(&facets, t).filter(|&facet| (facet as usize) < source.triangles.len());
+        let own = |t: u32| surface.facet(&facets, t).and_then(|facet| facets.triangle(facet));
         let own = (0..surface.mesh.triangles.len() as u32).map(own).collect();
         let too_thin = self.left_out(&offset.remains, &surface.mesh);
         Ok(Made { surface, own, fit: fitted, h: self.h, too_thin })

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::mesh::TriMesh;
+use crate::mesh::edges::Union;
 use crate::mesh::weld::welded_triangles;
 
 /// Beside an edge that bends, a rebuilt surface cannot be simplified within about this distance, h, on either side
@@ -88,28 +89,18 @@ fn flat(a: DVec3, b: DVec3) -> bool {
 
 /// Edges of one triangle each, joined where they share a vertex.
 struct Rims {
-    parent: Vec<u32>,
+    vertices: Union,
     edges: Vec<[u32; 2]>,
 }
 
 impl Rims {
     fn new(vertices: usize) -> Self {
-        Self { parent: (0..vertices as u32).collect(), edges: Vec::new() }
-    }
-
-    fn root(&mut self, mut v: u32) -> u32 {
-        while self.parent[v as usize] != v {
-            let next = self.parent[self.parent[v as usize] as usize];
-            self.parent[v as usize] = next;
-            v = next;
-        }
-        v
+        Self { vertices: Union::new(vertices), edges: Vec::new() }
     }
 
     fn add(&mut self, side: &Side) {
         let [a, b] = side.ends;
-        let (root_a, root_b) = (self.root(a), self.root(b));
-        self.parent[root_a.max(root_b) as usize] = root_a.min(root_b);
+        self.vertices.join(a, b);
         self.edges.push(if side.forwards { [a, b] } else { [b, a] });
     }
 
@@ -118,14 +109,14 @@ impl Rims {
         let mut vectors: FxHashMap<u32, DVec3> = FxHashMap::default();
         let edges = std::mem::take(&mut self.edges);
         for &[a, b] in &edges {
-            let root = self.root(a);
+            let root = self.vertices.root(a);
             // Seen from a vertex of the rim itself, so that far from the origin nothing is lost.
             let from = at(root);
             *vectors.entry(root).or_default() += (at(a) - from).cross(at(b) - from) / 2.0;
         }
         let mut curved: FxHashSet<u32> = FxHashSet::default();
         for [a, _] in edges {
-            let root = self.root(a);
+            let root = self.vertices.root(a);
             let vector = vectors[&root];
             if (at(a) - at(root)).dot(vector.normalize_or_zero()).abs() > PLANE * vector.length().sqrt() {
                 curved.insert(root);

@@ -93,10 +93,10 @@ impl Job<'_> {
         let votes = survey.votes(options.vote, &winding, progress)?;
         stages.begin(Stage::Sdf)?;
         let planes = survey.planes();
-        let distance = sdf::robust(&survey.spans, &planes, &votes, &options.robust(), progress)?;
+        let distance = sdf::robust(&survey.spans, &planes, (&votes, &lattice), &options.robust(), progress)?;
         stages.begin(Stage::Contour)?;
         let crossing = refine::crossings(&survey, &winding, &distance);
-        let mut raw = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;
+        let mut raw = contour(&distance, &crossing, &ContourOptions::default(), progress)?;
         if raw.mesh.triangles.is_empty() {
             return Err(why_nothing(&survey, finest).into());
         }

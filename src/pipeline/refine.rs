@@ -4,9 +4,9 @@ use glam::IVec3;
 use rayon::prelude::*;
 
 use super::{Precision, SurfaceOptions, TriangleSource};
-use crate::contour::{Collapsed, Contour, ContourVertex, Crossing, Edge, Merge, NO_TRIANGLE, collapse_same_voxel};
-use crate::fit::{Facets, NOT_KEPT, Side, Sides, Surface};
-use crate::lattice::{Grid, Lattice};
+use crate::contour::{Collapsed, Contour, ContourVertex, Crossing, Edge, Ground, Merge, collapse_same_voxel};
+use crate::fit::{Facets, Side, Sides, Surface};
+use crate::lattice::{DistanceField, Lattice};
 use crate::ldi::{Expression, edge_crossing};
 use crate::mesh::{Plane, TriMesh, ValidateOptions, validate};
 use crate::progress::{Progress, Stopped};
@@ -27,22 +27,21 @@ fn lid(winding: &Winding<'_>, expression: &Expression, inside: IVec3, outside: I
 pub(super) fn crossings<'a>(
     survey: &'a Survey,
     winding: &'a Winding<'_>,
-    distance: &'a Grid<f32>,
+    distance: &'a DistanceField,
 ) -> impl Fn(Edge) -> Option<Crossing> + Sync + 'a {
     move |edge| {
-        let lower_inside = distance.get(edge.voxel) < 0.0;
+        let lower_inside = distance.grid.get(edge.voxel) < 0.0;
         if let Some((t, hit)) = edge_crossing(&survey.spans, edge.voxel, edge.axis as usize, lower_inside) {
-            return Some(Crossing { t, triangle: hit.triangle() });
+            return Some(Crossing { t, triangle: Some(hit.triangle()) });
         }
         let upper = edge.voxel + IVec3::AXES[edge.axis as usize];
         let (inside, outside) = if lower_inside { (edge.voxel, upper) } else { (upper, edge.voxel) };
         let t = lid(winding, &survey.expression, inside, outside)?.t;
-        Some(Crossing { t: if lower_inside { t } else { 1.0 - t }, triangle: NO_TRIANGLE })
+        Some(Crossing { t: if lower_inside { t } else { 1.0 - t }, triangle: None })
     }
 }
 
-/// Gives the contour's vertices that lie over holes a facet of their own each, numbered after the
-/// triangles of the soup: the plane of the lid there. Returns these planes.
+/// Puts the contour's vertices that lie over holes on a plane of their own each: that of the lid there. Returns these planes.
 pub(super) fn lids(
     contour: &mut Contour,
     survey: &Survey,
@@ -50,7 +49,7 @@ pub(super) fn lids(
     progress: &Progress,
 ) -> Result<Vec<Plane>, Stopped> {
     let bare: Vec<usize> =
-        (0..contour.vertices.len()).filter(|&v| contour.vertices[v].triangle == NO_TRIANGLE).collect();
+        (0..contour.vertices.len()).filter(|&v| contour.vertices[v].ground == Ground::Unknown).collect();
     let found = bare.par_iter().map(|&v| {
         progress.check()?;
         let ContourVertex { voxel, outside, .. } = contour.vertices[v];
@@ -62,7 +61,7 @@ pub(super) fn lids(
     let found: Vec<Option<(usize, Plane)>> = found.collect::<Result<_, Stopped>>()?;
     let mut planes = Vec::new();
     for (v, plane) in found.into_iter().flatten() {
-        contour.vertices[v].triangle = (survey.soup.mesh.triangles.len() + planes.len()) as u32;
+        contour.vertices[v].ground = Ground::Plane(planes.len() as u32);
         planes.push(plane);
     }
     Ok(planes)
@@ -78,15 +77,15 @@ pub(super) fn merged(
 ) -> Result<Surface, Stopped> {
     let merge = match (options.collapse, options.fit.is_some()) {
         (false, _) => {
-            let sides = contour.vertices.iter().map(|v| Sides::of([side(v, facets)])).collect();
+            let sides = contour.vertices.iter().map(|v| Sides::of(side(v, facets))).collect();
             return Ok(Surface::new(contour.mesh, sides));
         }
         (true, true) => Merge::Flat { within: FLAT },
         (true, false) => Merge::All,
     };
-    let plane = |facet: u32| {
-        let plane = facets.plane(Side::new(facet, false));
-        (plane.normal != glam::DVec3::ZERO).then_some((plane.normal, plane.offset))
+    let plane = |ground: Ground| {
+        let plane = facets.plane(Side::new(facets.facet_on(ground)?, false));
+        (plane.normal != glam::DVec3::ZERO).then_some(plane)
     };
     let collapsed = collapse_same_voxel(contour, lattice, &plane, merge, progress)?;
     let sides = sides(&collapsed, facets);
@@ -94,12 +93,10 @@ pub(super) fn merged(
 }
 
 /// The side of the facet that a vertex of the raw contour lies on.
-fn side(vertex: &ContourVertex, facets: &Facets<'_>) -> Side {
-    if vertex.triangle == NO_TRIANGLE {
-        return Side::NONE;
-    }
-    let normal = facets.plane(Side::new(vertex.triangle, false)).normal;
-    Side::new(vertex.triangle, normal.dot((vertex.outside - vertex.voxel).as_dvec3()) < 0.0)
+fn side(vertex: &ContourVertex, facets: &Facets<'_>) -> Option<Side> {
+    let facet = facets.facet_on(vertex.ground)?;
+    let normal = facets.plane(Side::new(facet, false)).normal;
+    Some(Side::new(facet, normal.dot((vertex.outside - vertex.voxel).as_dvec3()) < 0.0))
 }
 
 /// The facets that the vertices of a merged contour lie on.
@@ -107,17 +104,17 @@ fn sides(collapsed: &Collapsed, facets: &Facets<'_>) -> Vec<Sides> {
     let members = |v: usize| &collapsed.members[collapsed.starts[v] as usize..collapsed.starts[v + 1] as usize];
     (0..collapsed.contour.mesh.positions.len())
         .into_par_iter()
-        .map(|v| Sides::of(members(v).iter().map(|&m| side(&collapsed.raw[m as usize], facets))))
+        .map(|v| Sides::of(members(v).iter().filter_map(|&m| side(&collapsed.raw[m as usize], facets))))
         .collect()
 }
 
 /// Where the triangles of a surface come from.
 pub(super) fn sources(surface: &Surface, facets: &Facets<'_>, soup: &Soup) -> Vec<TriangleSource> {
-    let source = |t: u32| match surface.facet(facets, t) {
-        Some(facet) if (facet as usize) < soup.mesh.triangles.len() => {
-            TriangleSource::Operand { operand: soup.operands.of(facet) as u32, triangle: soup.source[facet as usize] }
+    let source = |t: u32| match surface.facet(facets, t).and_then(|facet| facets.triangle(facet)) {
+        Some(own) => {
+            TriangleSource::Operand { operand: soup.operands.of(own) as u32, triangle: soup.source[own as usize] }
         }
-        _ => TriangleSource::Closed,
+        None => TriangleSource::Closed,
     };
     (0..surface.mesh.triangles.len() as u32).into_par_iter().map(source).collect()
 }
@@ -131,8 +128,10 @@ pub(super) fn with_own_numbers(
     progress: &Progress,
 ) -> Result<TriMesh, Stopped> {
     let mut positions = surface.mesh.positions.clone();
-    for (p, &kept) in positions.iter_mut().zip(&surface.kept).filter(|(_, kept)| **kept != NOT_KEPT) {
-        *p = source.positions[kept as usize];
+    for (p, v) in positions.iter_mut().zip(0..) {
+        if let Some(own) = surface.source_vertex(v) {
+            *p = source.positions[own as usize];
+        }
     }
     if precision == Precision::Single || positions == surface.mesh.positions {
         return Ok(surface.mesh);

@@ -10,7 +10,7 @@ use super::{
     TriangleCounts, TriangleSource, Warning, topology,
 };
 use crate::backend::BackendReport;
-use crate::fit::{FitReport, NOT_KEPT, Surface};
+use crate::fit::{FitReport, Surface};
 use crate::lattice::{Grid, Lattice};
 use crate::ldi::{Spans, THIN, ThinPlace, lengths, thin_places};
 use crate::mesh::Plane;
@@ -184,7 +184,8 @@ const LEAST_RAYS: usize = 4;
 /// Where walls and gaps are thinner than the lattice holds, of those that were not kept as they are.
 fn thin_regions(spans: &[Spans], planes: &[Plane], surface: &Surface, lattice: &Lattice) -> Vec<ThinRegion> {
     let mut kept = vec![false; planes.len()];
-    surface.facets.iter().filter(|&&t| t != NOT_KEPT).for_each(|&t| kept[t as usize] = true);
+    let triangles = 0..surface.mesh.triangles.len() as u32;
+    triangles.filter_map(|t| surface.source_triangle(t)).for_each(|t| kept[t as usize] = true);
     let region = |place: &ThinPlace| ThinRegion {
         gap: place.gap,
         min: lattice.to_model(place.min).to_array(),

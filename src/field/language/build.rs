@@ -14,7 +14,7 @@ use crate::field::{
     Body, Extent, Field, FillError, FillOptions, Placement, PointField, Sampled, Shared, Solid, blur_band, blurred,
     fill, placed, scattered,
 };
-use crate::lattice::Lattice;
+use crate::lattice::{DistanceField, Lattice};
 use crate::mesh::Bounds;
 use crate::progress::{Progress, Stopped};
 
@@ -197,24 +197,23 @@ pub(super) fn smoothing(call: &Call<Value>) -> SmoothOptions {
 }
 
 /// The field over its own lattice, filled up to `band` from zero, or all of it.
-fn sampled(field: &Shared, h: f64, band: f64, site: &Site<'_>) -> Result<(crate::lattice::Grid<f32>, Lattice)> {
+fn sampled(field: &Shared, h: f64, band: f64, site: &Site<'_>) -> Result<DistanceField> {
     let extent = shape_extent(field)?;
     let extent = Bounds { min: extent.min - band, max: extent.max + band };
     let lattice = (site.lattice)(&extent, Some(h)).map_err(|reason| BuildError::Lattice { reason })?;
     let options = FillOptions { band: Some(band), max_memory: site.max_memory };
-    Ok((fill(&**field, &lattice, &options, site.progress)?, lattice))
+    Ok(fill(&**field, &lattice, &options, site.progress)?)
 }
 
 pub(super) fn blur(field: &Shared, sigma: f64, site: &Site<'_>) -> Result<Shared> {
     let extent = shape_extent(field)?;
     let h = (site.lattice)(&extent, None).map_err(|reason| BuildError::Lattice { reason })?.h;
-    let (grid, lattice) = sampled(field, h, blur_band(sigma) + 2.0 * h, site)?;
-    Ok(Arc::new(Sampled::new(blurred(&grid, &lattice, sigma, site.progress)?, lattice)))
+    let sharp = sampled(field, h, blur_band(sigma) + 2.0 * h, site)?;
+    Ok(Arc::new(Sampled::new(blurred(&sharp, sigma, site.progress)?)))
 }
 
 pub(super) fn coarse(field: &Shared, voxel: f64, site: &Site<'_>) -> Result<Shared> {
-    let (grid, lattice) = sampled(field, voxel, 4.0 * voxel, site)?;
-    Ok(Arc::new(Sampled::new(grid, lattice)))
+    Ok(Arc::new(Sampled::new(sampled(field, voxel, 4.0 * voxel, site)?)))
 }
 
 pub(super) fn scattered_points(call: &Call<Value>, site: &Site<'_>) -> Result<Shared> {

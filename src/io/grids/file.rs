@@ -5,6 +5,7 @@ use glam::{DVec3, IVec3};
 use super::GridFormat;
 use crate::io::Unit;
 use crate::io::error::FileProblem;
+use crate::lattice::Lattice;
 
 /// Voxels along one side of a block.
 pub const BLOCK_SIDE: i32 = 8;
@@ -94,6 +95,11 @@ impl GridValues {
 }
 
 impl GridFile {
+    /// Where the voxels lie.
+    pub fn lattice(&self) -> Lattice {
+        Lattice { origin: self.origin, h: self.spacing, dims: IVec3::from(self.dims.map(|count| count as i32)) }
+    }
+
     /// The value at a voxel, model units; `None` outside the lattice.
     pub fn at(&self, voxel: IVec3) -> Option<f32> {
         let [x, y, z] = voxel.to_array().map(|k| usize::try_from(k).unwrap_or(usize::MAX));

@@ -78,6 +78,11 @@ impl<'a> FieldBuilder<'a> {
     /// # Errors
     /// See [`FieldError`].
     pub fn build(&mut self, tree: &Node<Value>) -> Result<Built, FieldError> {
+        for operand in self.operands {
+            if let FieldOperand::Mesh(operand) = operand {
+                operand.mesh.check()?;
+            }
+        }
         let mut read = language::Operands::new();
         for (operand, reading) in tree.readings() {
             self.progress.check()?;
@@ -154,11 +159,7 @@ impl<'a> FieldBuilder<'a> {
             max_memory: self.options.max_memory,
         };
         let found = distance(mesh, &options, self.progress)?;
-        let mut grid = found.field;
-        let h = found.lattice.h as f32;
-        grid.values.iter_mut().flatten().for_each(|value| *value *= h);
-        (grid.inside, grid.outside) = (grid.inside * h, grid.outside * h);
-        Ok(self.remember(operand, name, Arc::new(Sampled::new(grid, found.lattice))))
+        Ok(self.remember(operand, name, Arc::new(Sampled::new(found.field))))
     }
 
     fn exact(&mut self, operand: usize, mesh: &TriMesh) -> Shared {

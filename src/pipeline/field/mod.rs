@@ -17,12 +17,13 @@ use super::{
     BooleanError, DistanceError, DistanceReport, Draft, LatticeError, LimitError, Options, Outcome, Report,
     TriangleCounts, TriangleSource, VoxelSize, refine, sizing,
 };
+use crate::contour::Ground;
 use crate::digits;
 use crate::field::language::{self, BuildError};
 use crate::field::{Field, FillError, FillOptions, LevelError, Shared, fill, level};
 use crate::fit::{Facets, fit};
 use crate::ldi::{Evidence, MAX_VOXELS};
-use crate::mesh::{Bounds, NotSolid, SolidError};
+use crate::mesh::{Bounds, IndexError, NotSolid, SolidError};
 use crate::progress::{Progress, Stage, Stopped};
 use crate::sdf::exact::Band;
 
@@ -60,6 +61,9 @@ pub enum FieldError {
     /// The distance to an operand could not be found.
     #[error(transparent)]
     Distance(DistanceError),
+    /// A triangle of an operand refers to a vertex that is not there.
+    #[error(transparent)]
+    Index(#[from] IndexError),
     /// What was made is not a valid solid. The fit sees to it that it is; without one, it may not be.
     #[error(transparent)]
     NotSolid(Box<NotSolid>),
@@ -122,13 +126,14 @@ pub fn field_surface(
     }
     let mut contour = level.contour;
     let sources = &built.sources;
-    contour.vertices.iter_mut().zip(&level.facets).zip(0u32..).for_each(|((vertex, facet), n)| {
-        let own = sources.mesh.triangles.len() as u32 + n;
-        vertex.triangle = facet.and_then(|facet| sources.number(facet)).unwrap_or(own);
-    });
-    let wanted = |p: DVec3| off(field, p, lattice.h);
+    for (vertex, source) in contour.vertices.iter_mut().zip(&level.sources) {
+        if let Some(triangle) = source.and_then(|source| sources.number(source)) {
+            vertex.ground = Ground::Triangle(triangle);
+        }
+    }
+    let target = |p: DVec3| off(field, p, lattice.h);
     let source = &*frame.local(&sources.mesh);
-    let facets = Facets::new(source, level.planes).with_wanted(&wanted);
+    let facets = Facets::new(source, level.planes).with_target(&target);
     stages.begin(Stage::Collapse)?;
     let mut surface = refine::merged(contour, &facets, &lattice, &options.surface(), progress)?;
     let mut fitted = None;
@@ -138,7 +143,7 @@ pub fn field_surface(
         let (fit, report) = fit(&surface, &facets, &Evidence::default(), lattice.h, &options, progress)?;
         (surface, fitted) = (fit, Some(report));
     }
-    let source = |t: u32| sources.origin(surface.facet(&facets, t));
+    let source = |t: u32| sources.origin(surface.facet(&facets, t).and_then(|facet| facets.triangle(facet)));
     let origins: Vec<TriangleSource> = (0..surface.mesh.triangles.len() as u32).into_par_iter().map(source).collect();
     let made = origins.iter().filter(|source| **source == TriangleSource::Closed).count();
     let report = Report {
@@ -159,7 +164,7 @@ pub fn field_surface(
 /// How far a point is from the level, model units. Gradients cost more than values, and mostly the value tells enough.
 fn off(field: &dyn Field, p: DVec3, h: f64) -> f64 {
     let value = field.value(p).abs();
-    let least = value / field.steepness();
+    let least = value / field.lipschitz();
     if value < NEAR * h || least > FAR * h {
         return least.max(value.min(NEAR * h));
     }
@@ -208,15 +213,11 @@ pub fn field_grid(
     lattice.origin -= room * h;
     lattice.dims += 2 * IVec3::splat(room as i32);
     let wanted = FillOptions { band, max_memory: options.max_memory };
-    let mut grid = fill(&*frame.local_field(&built.field), &lattice, &wanted, progress)?;
-    lattice = frame.global_lattice(lattice);
-    // The outcome holds distances in h.
-    let per_h = (1.0 / h) as f32;
-    grid.values.par_iter_mut().flatten().for_each(|value| *value *= per_h);
-    (grid.inside, grid.outside) = (grid.inside * per_h, grid.outside * per_h);
+    let mut field = fill(&*frame.local_field(&built.field), &lattice, &wanted, progress)?;
+    field.lattice = frame.global_lattice(lattice);
     let report = DistanceReport { stages: stages.finish(), ..DistanceReport::default() };
     let band = band.map_or(Band::Full, |band| Band::Within(band / h));
-    Ok(DistanceOutcome::described(grid, lattice, band, report))
+    Ok(DistanceOutcome::described(field, band, report))
 }
 
 /// The values of the field at points, model units: to paint a surface with.
@@ -289,6 +290,7 @@ impl From<SolidError> for FieldError {
     fn from(error: SolidError) -> Self {
         match error {
             SolidError::Stopped(stopped) => Self::Stopped(stopped),
+            SolidError::Index(error) => Self::Index(error),
             SolidError::NotSolid(what) => Self::NotSolid(what),
         }
     }
