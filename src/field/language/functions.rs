@@ -20,7 +20,7 @@ pub static FUNCTIONS: &[&Function] = &[
     &INTERSECTION,
     &DIFFERENCE,
     &SYMMETRIC_DIFFERENCE,
-    &of("offset", &["a"], "a grown by a length, or shrunk where it is negative", |call, fields, _| {
+    &of("offset", &["a"], "a grown by a length, or shrunk where the length is negative", |call, fields, _| {
         Ok(algebra::offset(fields[0].clone(), call.length_or_zero("by")))
     })
     .with(&[required("by", Kind::SignedLength)]),
@@ -60,14 +60,14 @@ pub static FUNCTIONS: &[&Function] = &[
     &of(
         "morph_radii",
         &["a", "b"],
-        "the same, each weighted by its radius, so that a small shape does not vanish early",
+        "the shape on the way from a to b, with each shape weighted by its radius, so that a small one does not vanish early",
         |call, fields, _| morphed_by_radii(pair(fields), call.number("t").unwrap_or_default()),
     )
     .with(&[required("t", SHARE)]),
     &of(
         "ramp",
         &["a", "b"],
-        "a at one end of an axis, b at the other, shapes between them between",
+        "a at one end of an axis, b at the other end, and in between the shapes on the way from one to the other",
         |call, fields, _| ramp(call, pair(fields)),
     )
     .with(&[
@@ -75,14 +75,14 @@ pub static FUNCTIONS: &[&Function] = &[
         default("from", Kind::Place, Preset::Quantity(0.0, "%")),
         default("to", Kind::Place, Preset::Quantity(100.0, "%")),
     ]),
-    &of("texture", &["a", "b"], "a, with its surface moved by the field b", |call, fields, _| {
+    &of("texture", &["a", "b"], "a, with its surface moved in and out by the field b", |call, fields, _| {
         let [a, b] = pair(fields);
         Ok(algebra::morph(a, b, call.number("amount").unwrap_or_default()))
     })
     .with(&[required("amount", SHARE)]),
     &of_many(
         "material",
-        "no shape: a value on each shape, passing smoothly from one to the other between them",
+        "no shape, but a value for each shape, which passes smoothly from one to the other between them",
         |call, fields, _| Ok(material(fields.to_vec(), call.list.clone())),
     )
     .listed(List::Values)
@@ -90,7 +90,7 @@ pub static FUNCTIONS: &[&Function] = &[
     &of(
         "filter",
         &["a"],
-        "the same surface, the field smooth away from it; width: of the bump kernel, 8/9 of cap; sigma: a Gaussian kernel instead; least: fewest samples where few are enough",
+        "the surface of a, with a field that is smooth away from it; width is that of the bump kernel, by default 8/9 of cap; sigma takes a Gaussian kernel instead; least is the fewest samples where few are enough",
         |call, fields, _| filter(call, &fields[0]),
     )
     .with(&[
@@ -103,7 +103,7 @@ pub static FUNCTIONS: &[&Function] = &[
     &of(
         "smooth",
         &["a", "volume"],
-        "a, smoothed by up to radius from depth inside the volume on",
+        "a, smoothed inside the volume: by radius from depth on, and by less nearer to the volume's surface",
         |call, fields, _| {
             let [a, volume] = pair(fields);
             Ok(smooth(a, volume, &smoothing(call)))
@@ -121,7 +121,7 @@ pub static FUNCTIONS: &[&Function] = &[
     &of(
         "blob",
         &["a"],
-        "the blobby field: 0 on the surface, minus and plus radius from radius on",
+        "the blobby field of a: 0 on the surface, and farther away than radius it stays at minus or plus radius",
         |call, fields, _| Ok(blob::blob(fields[0].clone(), blobs(call))),
     )
     .with(BLOB),
@@ -133,7 +133,7 @@ pub static FUNCTIONS: &[&Function] = &[
         Ok(blob::blob_intersection(fields.to_vec(), blobs(call)))
     })
     .with(BLOB),
-    &of("blob_difference", &["a", "b"], "the blobby field of a, bitten by that of b", |call, fields, _| {
+    &of("blob_difference", &["a", "b"], "the blobby field of a, from which that of b takes a bite", |call, fields, _| {
         let [a, b] = pair(fields);
         Ok(blob::blob_difference(a, vec![b], blobs(call)))
     })
@@ -141,7 +141,7 @@ pub static FUNCTIONS: &[&Function] = &[
     &of(
         "compare",
         &["a", "b"],
-        "no shape: how much more a is there than b, from -1 to 1",
+        "no shape, but how much more of a is there than of b, from -1 to 1",
         |call, fields, _| {
             let [a, b] = pair(fields);
             Ok(blob::compare(a, b, blobs(call)))
@@ -149,12 +149,12 @@ pub static FUNCTIONS: &[&Function] = &[
     )
     .with(BLOB)
     .measuring(),
-    &of("move", &["a"], "a elsewhere", |call, fields, _| {
+    &of("move", &["a"], "a moved by x, y and z", |call, fields, _| {
         let by = ["x", "y", "z"].map(|name| call.length_or_zero(name));
         Ok(moved(&fields[0], Placement::moved(DVec3::from_array(by))))
     })
     .with(&[CENTRE[0], CENTRE[1], CENTRE[2]]),
-    &of("scale", &["a"], "a made larger about the middle of its box, or smaller", |call, fields, _| {
+    &of("scale", &["a"], "a made larger or smaller about the middle of its box", |call, fields, _| {
         let factor = call.number("factor").unwrap_or(1.0);
         Ok(moved(&fields[0], Placement::scaled(factor, middle(&fields[0])?)))
     })
@@ -172,13 +172,13 @@ pub static FUNCTIONS: &[&Function] = &[
     &of(
         "align",
         &["a", "b"],
-        "a moved and scaled: the middle and the longest side of its box become those of b's",
+        "a moved and scaled, so that its box has the middle and the longest side of the box of b",
         |_, fields, _| aligned(pair(fields)),
     ),
     &of(
         "points",
         &[],
-        "the distance to random points in the box of the operands and of the bodies before",
+        "the distance to random points in the box around the files and the bodies that stand before it in the text",
         |call, _, site| scattered_points(call, site),
     )
     .with(&[
@@ -189,7 +189,7 @@ pub static FUNCTIONS: &[&Function] = &[
         Ok(body(Solid::Sphere { radius: call.length_or_zero("radius") }, call, site))
     })
     .with(&[required("radius", Kind::Length), CENTRE[0], CENTRE[1], CENTRE[2]]),
-    &of("box", &[], "a box by its edges, about a centre", |call, _, site| {
+    &of("box", &[], "a box about a centre, given by the lengths of its edges", |call, _, site| {
         let size = ["sx", "sy", "sz"].map(|name| call.length_or_zero(name));
         Ok(body(Solid::Box { size: DVec3::from_array(size) }, call, site))
     })
@@ -213,16 +213,16 @@ pub static FUNCTIONS: &[&Function] = &[
         CENTRE[1],
         CENTRE[2],
     ]),
-    &of("torus", &[], "a ring about a centre: radius of the ring, radius of its tube", |call, _, site| {
+    &of("torus", &[], "a ring about a centre; major is the radius of the ring, minor that of its tube", |call, _, site| {
         let [major, minor] = ["major", "minor"].map(|name| call.length_or_zero(name));
         Ok(body(Solid::Torus { major, minor }, call, site))
     })
     .with(&[required("major", Kind::Length), required("minor", Kind::Length), ALONG_Z, CENTRE[0], CENTRE[1], CENTRE[2]]),
-    &of("plane", &[], "all that is below a coordinate", |call, _, site| Ok(half_space(call, site)))
+    &of("plane", &[], "everything that is below a coordinate", |call, _, site| Ok(half_space(call, site)))
         .with(&[required("axis", Kind::Axis), required("at", Kind::SignedLength)]),
     &read("exact", Reading::Exact, "the distance to the nearest triangle of a file"),
-    &read("robust", Reading::Robust, "the field that repairs are made from"),
-    &read("levels", Reading::Levels, "the distance to the nearest triangle, its sides by outlines level by level"),
+    &read("robust", Reading::Robust, "the smooth field that repairs are made from"),
+    &read("levels", Reading::Levels, "the distance to the nearest triangle, with inside and outside told by the outlines of horizontal slices"),
 ];
 
 /// What `-a` is short for.
