@@ -29,6 +29,7 @@ pub struct MorphologyOptions {
 
 /// What was done to the solid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MorphologyReport {
     /// What was done.
     pub operation: Operation,

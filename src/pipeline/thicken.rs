@@ -14,7 +14,7 @@ use crate::digits;
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, IndexError, Pseudonormals, Solid, TriMesh};
 use crate::morphology::{Gauge, OffsetError, middles};
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 
 /// Walls are at least this many voxels thick: of less the lattice makes no round edge.
 const LEAST_VOXELS: f64 = 4.0;
@@ -28,6 +28,7 @@ const APART: f64 = 1.0;
 
 /// On which side of an open sheet there will be material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum SheetSide {
     /// Half of the thickness on either side.
@@ -52,6 +53,7 @@ pub struct ThickenOptions {
 
 /// What was too thin.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThickenReport {
     /// The least thickness, model units.
     pub least: f64,
@@ -135,7 +137,7 @@ pub fn thicken(
     let local = solid.map(|solid| frame.local(solid));
     let fixed = options.surface.with_voxel(h);
     let mut stages = Stages::new(progress);
-    stages.begin("thin walls")?;
+    stages.begin(Stage::ThinWalls)?;
     let body = local.as_ref().map(|solid| Gauge::new(solid, None));
     let (mut thin, thin_area) = match &body {
         Some(body) => middles(body, min, h, progress)?,
