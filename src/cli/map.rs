@@ -6,7 +6,7 @@ use super::exit::Failure;
 use super::session::Session;
 use super::{output, side};
 use crate::io::{self, FaceMap, LegendEntry};
-use crate::pipeline::{Operand, Outcome, TriangleKind, kinds};
+use crate::pipeline::{Operand, Outcome, TriangleKind};
 
 /// The colours of the kinds, in their order: blue-grey, orange, magenta. Eyes that lack a kind of cones tell them apart, too (see the tests).
 const KINDS: [[u8; 3]; 3] = [[176, 190, 205], [230, 150, 20], [165, 15, 105]];
@@ -33,7 +33,7 @@ pub fn write(
     canal_of: &[u32],
     session: &Session,
 ) -> Result<(), Failure> {
-    let kinds = kinds(outcome, operands.iter().copied());
+    let kinds = outcome.kinds(operands.iter().copied());
     session.progress.check()?;
     let numbers: Vec<u32> = kinds.iter().map(|&kind| kind as u32).collect();
     let canal = |t: usize| canal_of.get(t).copied().filter(|&canal| canal > 0);

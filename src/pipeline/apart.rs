@@ -4,9 +4,8 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 use rustc_hash::FxHashMap;
-use serde::Serialize;
 
-use super::{Options, Precision, TriangleSource};
+use super::{Options, Precision, StandingReport, TriangleSource};
 use crate::fit::{SimpleSource, rounded, simplified_source};
 use crate::ldi::{Expression, Operands};
 use crate::mesh::TriMesh;
@@ -14,20 +13,6 @@ use crate::mesh::edges::Union;
 use crate::progress::{Progress, Stopped};
 use crate::shells::{Contacts, Fate, Shell, Shells, StandingOptions, contacts, shells, standing};
 use crate::survey::Soup;
-
-/// Shells of the operands that stayed as they are, without any voxel.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct StandingReport {
-    /// Shells that are part of the result as they are.
-    pub shells: usize,
-    /// Their triangles.
-    pub triangles: usize,
-    /// Shells that were left out because both of their sides lie inside the result, or both outside.
-    pub left_out: usize,
-    /// Shells that were inside out and were turned over.
-    pub turned: usize,
-}
 
 /// The shells of a soup, and what becomes of them.
 pub(super) struct Apart {

@@ -5,62 +5,11 @@ use super::frame::Frame;
 use super::order::Ordered;
 use super::rebuild::Job;
 use super::stages::Stages;
-use super::{Draft, LatticeError, LimitError, NothingEnclosed, Operand, Options, Outcome, plan, report, sizing};
-use crate::backend::BackendError;
+use super::{BooleanError, Draft, Operand, Options, Outcome, account, plan, sizing};
 use crate::ldi::Expression;
-use crate::mesh::{IndexError, NotSolid, SolidError, TriMesh};
-use crate::progress::{Progress, Stage, Stopped};
-use crate::survey::{Soup, SoupError};
-
-/// Why a boolean, or a repair, gave no solid.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum BooleanError {
-    /// Interrupted, or the deadline passed.
-    #[error(transparent)]
-    Stopped(#[from] Stopped),
-    /// An operand has no triangles with area.
-    #[error("operand {operand} has no triangle with an area")]
-    Empty {
-        /// Number of the operand, from 0.
-        operand: usize,
-    },
-    /// A triangle of an operand refers to a vertex that is not there.
-    #[error("operand {operand}: {error}")]
-    Index {
-        /// Number of the operand, from 0.
-        operand: usize,
-        /// Which triangle and which vertex.
-        error: IndexError,
-    },
-    /// The expression names an operand that was not given.
-    #[error("the expression names operand {operand}, but only {given} were given")]
-    MissingOperand {
-        /// Number of the operand, from 0.
-        operand: usize,
-        /// Operands given.
-        given: usize,
-    },
-    /// The voxel size cannot be used with these coordinates.
-    #[error(transparent)]
-    Lattice(#[from] LatticeError),
-    /// More memory or larger numbers would be needed than there are.
-    #[error(transparent)]
-    Limit(#[from] LimitError),
-    /// The result encloses nothing.
-    #[error(transparent)]
-    Nothing(#[from] NothingEnclosed),
-    /// The graphics processor was asked for and cannot do it.
-    #[error("{reason}")]
-    Device {
-        /// One sentence: why.
-        reason: String,
-        /// What to try.
-        hint: String,
-    },
-    /// What was made is not a valid solid. The fit sees to it that it is; without one, it may not be.
-    #[error(transparent)]
-    NotSolid(Box<NotSolid>),
-}
+use crate::mesh::TriMesh;
+use crate::progress::{Progress, Stage};
+use crate::survey::Soup;
 
 /// Repairs one mesh: all its shells together are one operand. A valid solid comes back as it is.
 ///
@@ -133,34 +82,6 @@ fn evaluate(
             }
         },
     };
-    let draft: Draft = report::finished(draft, &apart, stages);
+    let draft: Draft = account::finished(draft, &apart, stages);
     Ok(draft.counted(&meshes).global(&frame).judged(operands, progress)?)
-}
-
-impl From<SoupError> for BooleanError {
-    fn from(error: SoupError) -> Self {
-        match error {
-            SoupError::Stopped(stopped) => Self::Stopped(stopped),
-            SoupError::Empty { operand } => Self::Empty { operand },
-        }
-    }
-}
-
-impl From<BackendError> for BooleanError {
-    fn from(error: BackendError) -> Self {
-        match error {
-            BackendError::Stopped(stopped) => Self::Stopped(stopped),
-            BackendError::Device { reason, hint } => Self::Device { reason, hint },
-        }
-    }
-}
-
-impl From<SolidError> for BooleanError {
-    fn from(error: SolidError) -> Self {
-        match error {
-            SolidError::Stopped(stopped) => Self::Stopped(stopped),
-            SolidError::Index(error) => Self::Index { operand: 0, error },
-            SolidError::NotSolid(what) => Self::NotSolid(what),
-        }
-    }
 }

@@ -1,15 +1,13 @@
 //! The canals of a solid: which there are, and the solid without them.
 
-use serde::Serialize;
-
 use super::frame::Frame;
 use super::morphology::plan_offsets;
 use super::offsets::{Job, checked_voxel, usable};
 use super::plan::Offsets;
 use super::stages::Stages;
-use super::{Changed, MorphologyError, Plan, Report, StageTime, SurfaceOptions};
+use super::{CanalReport, Changed, MorphologyError, Plan, Report, StageTime, SurfaceOptions};
 use crate::mesh::{Solid, TriMesh};
-use crate::morphology::{self, Balls, Canal, Gauge, OffsetError};
+use crate::morphology::{self, Balls, Gauge, OffsetError};
 use crate::progress::{Progress, Stage, Stopped};
 
 /// Options of [`canals`].
@@ -32,20 +30,6 @@ pub enum Remove {
     All,
     /// Those with these numbers.
     These(Vec<u32>),
-}
-
-/// What was found of canals.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct CanalReport {
-    /// The diameter that was asked for, model units.
-    pub max_diameter: f64,
-    /// The canals, the widest first.
-    pub canals: Vec<Canal>,
-    /// Shallow places that a closing would round besides: inner edges and dents.
-    pub roundings: usize,
-    /// Numbers of the canals that were filled.
-    pub removed: Vec<u32>,
 }
 
 /// The canals of a solid.

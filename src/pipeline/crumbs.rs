@@ -1,9 +1,8 @@
 //! Closed surfaces too small to be meant: crumbs that the lattice made, and what the user wants no smaller.
 
 use rustc_hash::FxHashMap;
-use serde::Serialize;
 
-use super::{BooleanError, Draft, NothingEnclosed, Operand, Outcome, Report, Topology, TriangleSource};
+use super::{BooleanError, Draft, Dropped, NothingEnclosed, Operand, Outcome, Report, Topology, TriangleSource};
 use crate::ldi::Operands;
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
@@ -17,29 +16,6 @@ const CRUMB: f64 = 8.0;
 /// Pieces that have more than this part of the volume together are no crumbs but what a lattice has left of a body, however small each is: they stay, and are told
 /// as pieces that came off.
 const FRAGMENTS: f64 = 1e-3;
-
-/// Closed surfaces that were dropped.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct Dropped {
-    /// How many.
-    pub surfaces: usize,
-    /// Their triangles.
-    pub triangles: usize,
-    /// What they enclosed, together, cubic model units.
-    pub volume: f64,
-}
-
-impl Dropped {
-    /// Both together.
-    pub fn and(self, other: Self) -> Self {
-        Self {
-            surfaces: self.surfaces + other.surfaces,
-            triangles: self.triangles + other.triangles,
-            volume: self.volume + other.volume,
-        }
-    }
-}
 
 /// What was made of a soup with voxels of `h`, without crumbs. The largest piece of every closed shell of the soup, and of one with
 /// small holes, is none; nor is the largest piece of all. Where crumbs are much of the volume, all stay.

@@ -4,8 +4,8 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::account::refuse_scattered;
 use super::frame::Frame;
-use super::nothing::refuse_scattered;
 use super::plan::{BASE_BYTES, Input};
 use super::stages::Stages;
 use super::{LatticeError, LimitError, NothingEnclosed, StageTime, VoxelSize, sizing};

@@ -3,15 +3,14 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-use serde::Serialize;
 
 use super::morphology::{Voxels, plan_offsets, with_voxels};
 use super::offsets::{usable, volume};
 use super::plan::Offsets;
 use super::stages::Stages;
 use super::{
-    BooleanError, Changed, LatticeError, MorphologyError, MorphologyOptions, Plan, Report, SurfaceOptions,
-    TriangleSource, boolean, sizing,
+    BooleanError, Changed, DrainReport, HollowReport, LatticeError, MorphologyError, MorphologyOptions, Plan, Report,
+    SurfaceOptions, TriangleSource, boolean, sizing,
 };
 use crate::ldi::{Expression, Operands};
 use crate::mesh::{ClosestTree, Pseudonormals, Solid, TriMesh};
@@ -49,38 +48,6 @@ pub struct Drain {
     pub diameter: f64,
     /// A point on the surface or near it: the hole begins at the nearest place.
     pub at: DVec3,
-}
-
-/// What was hollowed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct HollowReport {
-    /// Thickness of the wall, model units.
-    pub wall: f64,
-    /// Volume of the solid before, cubic model units.
-    pub volume_before: f64,
-    /// Volume after.
-    pub volume_after: f64,
-    /// Cavities made.
-    pub cavities: usize,
-    /// Cavities of less than 64 voxels that were not made.
-    pub left_out: usize,
-    /// The drains.
-    pub drains: Vec<DrainReport>,
-}
-
-/// A drain as it was made; model units.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct DrainReport {
-    /// Where it begins, on the surface.
-    pub at: [f64; 3],
-    /// Its direction, inwards.
-    pub direction: [f64; 3],
-    /// Its diameter.
-    pub diameter: f64,
-    /// How long it is, from the surface to the cavity.
-    pub depth: f64,
 }
 
 /// Why a solid could not be hollowed. Lengths are in model units.

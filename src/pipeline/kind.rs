@@ -1,76 +1,14 @@
 //! What became of a surface: which triangles of a result are the input's, which are made anew, and which are made up.
 
+use super::TriangleKind;
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
 
-use super::{Operand, Outcome, TriangleSource};
+use super::TriangleSource;
 use crate::mesh::TriMesh;
-
-/// What a triangle of a result is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum TriangleKind {
-    /// A triangle of an operand, with the same three corners.
-    Kept,
-    /// It lies on the surface of an operand, but is made anew: cut, moved, simplified, or from voxels.
-    Rebuilt,
-    /// No surface of an operand is there.
-    MadeUp,
-}
-
-impl TriangleKind {
-    /// Every kind; its place here is its number in a map.
-    pub const ALL: [Self; 3] = [Self::Kept, Self::Rebuilt, Self::MadeUp];
-
-    /// The word for it, the same in summaries, legends and reports.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Kept => "kept",
-            Self::Rebuilt => "rebuilt",
-            Self::MadeUp => "made up",
-        }
-    }
-}
-
-/// How many triangles of a result are of each kind.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct TriangleCounts {
-    /// Triangles of operands, with the same corners.
-    pub kept: usize,
-    /// Triangles on the surface of operands, but made anew.
-    pub rebuilt: usize,
-    /// Triangles where no operand has a surface.
-    pub made_up: usize,
-}
-
-impl TriangleCounts {
-    /// The numbers of each of these kinds.
-    pub fn of(kinds: &[TriangleKind]) -> Self {
-        let [kept, rebuilt, made_up] = TriangleKind::ALL.map(|kind| kinds.iter().filter(|k| **k == kind).count());
-        Self { kept, rebuilt, made_up }
-    }
-
-    /// How many are of a kind.
-    pub fn count(&self, kind: TriangleKind) -> usize {
-        match kind {
-            TriangleKind::Kept => self.kept,
-            TriangleKind::Rebuilt => self.rebuilt,
-            TriangleKind::MadeUp => self.made_up,
-        }
-    }
-}
 
 /// The kind of each triangle of a result, told by its corners and those of the operand's triangle that it lies on. Corners are the same also
 /// after rounding to single precision, and when the triangle was turned over.
-pub fn kinds<'a>(outcome: &Outcome, operands: impl IntoIterator<Item: Into<Operand<'a>>>) -> Vec<TriangleKind> {
-    let operands: Vec<&TriMesh> = operands.into_iter().map(|operand| operand.into().mesh).collect();
-    kinds_of(&outcome.solid, &outcome.sources, &operands)
-}
-
-/// The same of a result that is not judged yet.
 pub(super) fn kinds_of(mesh: &TriMesh, sources: &[TriangleSource], operands: &[&TriMesh]) -> Vec<TriangleKind> {
     let kind = |(t, source): (usize, &TriangleSource)| match *source {
         TriangleSource::Closed => TriangleKind::MadeUp,

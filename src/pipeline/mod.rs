@@ -4,6 +4,7 @@
 //! [`hollow`] take a solid and give [`Changed`]; [`Outcome::followed_by`] puts that behind what the solid came from. Each has its own options, its
 //! own plan and its own errors.
 
+mod account;
 mod advice;
 mod apart;
 mod boolean;
@@ -12,12 +13,12 @@ mod changed;
 mod colours;
 mod crumbs;
 mod distance;
+mod error;
 mod field;
 mod frame;
 mod hollow;
 mod kind;
 mod morphology;
-mod nothing;
 mod offsets;
 mod operand;
 mod options;
@@ -29,44 +30,45 @@ mod rebuild;
 mod refine;
 mod report;
 mod sizing;
+mod source;
 mod stages;
 mod textures;
 mod thicken;
 mod thickness;
 mod topology;
-mod warning;
 mod work;
 
 pub use advice::{Advice, Trouble};
-pub use apart::StandingReport;
-pub use boolean::{BooleanError, boolean, repair};
-pub use canals::{CanalError, CanalOptions, CanalOutcome, CanalReport, Remove, canals, plan_canals};
+pub use boolean::{boolean, repair};
+pub use canals::{CanalError, CanalOptions, CanalOutcome, Remove, canals, plan_canals};
 pub use changed::Changed;
 pub use colours::{carry_colours, carry_to_simpler};
-pub use crumbs::{Dropped, drop_smaller};
+pub use crumbs::drop_smaller;
 pub use distance::{
     DistanceError, DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign,
     distance, plan_distance,
 };
+pub use error::{BooleanError, LimitError, MorphologyError};
 pub use field::{
     Built, FieldBand, FieldBuilder, FieldError, FieldOperand, FieldReport, OperandReport, field_grid, field_spacing,
     field_surface, field_values,
 };
-pub use hollow::{Drain, DrainReport, HollowError, HollowOptions, HollowReport, hollow, plan_hollow};
-pub use kind::{TriangleCounts, TriangleKind, kinds};
-pub use morphology::{MorphologyError, MorphologyOptions, MorphologyReport, morphology, plan_morphology};
-pub use nothing::NothingEnclosed;
+pub use hollow::{Drain, HollowError, HollowOptions, hollow, plan_hollow};
+pub use morphology::{MorphologyOptions, morphology, plan_morphology};
 pub use operand::Operand;
-pub use options::{Options, Precision, SurfaceOptions};
-pub use outcome::{Outcome, TriangleSource};
-pub use plan::{LimitError, Plan, plan};
-pub use report::{LdiReport, Report, StageTime, ThinRegion, ThinReport};
-pub use sizing::{LatticeError, MAX_RESOLUTION, VoxelSize};
+pub use options::{Options, Precision, SurfaceOptions, VoxelSize};
+pub use outcome::Outcome;
+pub use plan::{Plan, plan};
+pub use report::{
+    CanalReport, DrainReport, Dropped, HollowReport, LdiReport, LostBody, MorphologyReport, NothingEnclosed, Report,
+    StageTime, StandingReport, ThickenReport, ThinRegion, ThinReport, Topology, TopologyReport, TriangleCounts,
+    TriangleKind, Warning,
+};
+pub use sizing::{LatticeError, MAX_RESOLUTION};
+pub use source::TriangleSource;
 pub use textures::{carry_texture, carry_texture_to_simpler, classes_of};
-pub use thicken::{SheetSide, ThickenError, ThickenOptions, ThickenReport, plan_thicken, thicken};
+pub use thicken::{SheetSide, ThickenError, ThickenOptions, plan_thicken, thicken};
 pub use thickness::{LengthsReport, ThicknessError, ThicknessReport, thickness};
-pub use topology::{LostBody, Topology, TopologyReport};
-pub use warning::Warning;
 pub use work::Work;
 
 use outcome::Draft;

@@ -1,17 +1,13 @@
 //! Dilate, erode, close and open.
 
-use serde::Serialize;
-
 use super::frame::Frame;
 use super::offsets::{Job, Made, check_offsets, checked_voxel, median, offset_voxel, thin_share, usable, volume};
 use super::plan::{Offsets, of_offsets};
 use super::stages::Stages;
-use super::{Changed, LatticeError, LimitError, Plan, Report, SurfaceOptions, sizing};
-use crate::digits;
-use crate::mesh::{IndexError, NotSolid, Solid, SolidError, TriMesh};
-use crate::morphology::{Gauge, OffsetError, Operation, places};
-use crate::progress::{Progress, Stopped};
-use crate::sdf::exact::ExactError;
+use super::{Changed, MorphologyError, MorphologyReport, Plan, Report, SurfaceOptions, sizing};
+use crate::mesh::{Solid, TriMesh};
+use crate::morphology::{Gauge, Operation, places};
+use crate::progress::Progress;
 
 /// Options of [`morphology`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,73 +21,6 @@ pub struct MorphologyOptions {
     pub sharp: Option<f64>,
     /// How the new surface is made.
     pub surface: SurfaceOptions,
-}
-
-/// What was done to the solid.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct MorphologyReport {
-    /// What was done.
-    pub operation: Operation,
-    /// The radius, model units.
-    pub radius: f64,
-    /// Volume of the solid before, cubic model units.
-    pub volume_before: f64,
-    /// Volume after.
-    pub volume_after: f64,
-    /// Triangles of the result that the operation made; the others lie on the solid's own.
-    pub made: usize,
-    /// The voxel of the offsets, model units: smaller than that of the solid where the radius or what is left asks for it.
-    pub voxel: f64,
-    /// Places where what is left is thinner than that voxel, and is not there, or not whole.
-    pub too_thin: usize,
-    /// One of them, model units.
-    pub thin_place: Option<[f64; 3]>,
-    /// Their part of the surface that there should be, 0 to 1.
-    pub thin_share: f64,
-    /// A voxel that would hold half of them, model units.
-    pub voxel_that_holds: Option<f64>,
-}
-
-/// Why an operation on a solid gave none. Lengths are in model units.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum MorphologyError {
-    /// Interrupted, or the deadline passed.
-    #[error(transparent)]
-    Stopped(#[from] Stopped),
-    /// The radius is no positive number.
-    #[error("a radius of {} cannot be used; it must be above zero", digits::number(*radius))]
-    Radius {
-        /// The radius that was asked for.
-        radius: f64,
-    },
-    /// The voxel size cannot be used with these coordinates.
-    #[error(transparent)]
-    Lattice(#[from] LatticeError),
-    /// More memory or larger numbers would be needed than there are.
-    #[error(transparent)]
-    Limit(#[from] LimitError),
-    /// The distance to the solid could not be found.
-    #[error(transparent)]
-    Distance(ExactError),
-    /// Nothing of the solid is left.
-    #[error("nothing is left{}", thinner_than.map_or(String::new(), |t| format!(": the solid is nowhere thicker than {}", digits::number(t))))]
-    NothingLeft {
-        /// The solid is nowhere thicker than this; `None` where it is not that.
-        thinner_than: Option<f64>,
-    },
-    /// What is left is too thin for the voxels.
-    #[error("what is left is thinner than a voxel of {} everywhere: a smaller voxel shows it", digits::number(*voxel))]
-    AllTooThin {
-        /// The smallest voxel that was tried.
-        voxel: f64,
-    },
-    /// What was made refers to a vertex that is not there.
-    #[error(transparent)]
-    Index(IndexError),
-    /// What was made is not a valid solid. The fit sees to it that it is; without one, it may not be.
-    #[error(transparent)]
-    NotSolid(Box<NotSolid>),
 }
 
 /// Which voxels an offset is made with.
@@ -231,25 +160,6 @@ impl MorphologyOptions {
             thin_place: made.too_thin.first().map(|remain| remain.point.to_array()),
             thin_share: thin_share(&made.too_thin, &made.surface.mesh),
             voxel_that_holds: median(made.too_thin.iter().map(|remain| remain.thickness)),
-        }
-    }
-}
-
-impl From<OffsetError> for MorphologyError {
-    fn from(error: OffsetError) -> Self {
-        match error {
-            OffsetError::Stopped(stopped) => Self::Stopped(stopped),
-            OffsetError::Distance(error) => Self::Distance(error),
-        }
-    }
-}
-
-impl From<SolidError> for MorphologyError {
-    fn from(error: SolidError) -> Self {
-        match error {
-            SolidError::Stopped(stopped) => Self::Stopped(stopped),
-            SolidError::Index(error) => Self::Index(error),
-            SolidError::NotSolid(what) => Self::NotSolid(what),
         }
     }
 }

@@ -1,7 +1,5 @@
 //! What goes into a pipeline: meshes, and what they look like.
 
-use super::colours::classes;
-use super::textures::classes_of;
 use crate::io::{Colours, Loaded, TextureMap};
 use crate::ldi::Expression;
 use crate::mesh::{Solid, TriMesh};
@@ -36,15 +34,6 @@ impl<'a> Operand<'a> {
             }
         }
         (all, expression.less(&negative_of))
-    }
-
-    /// A number for each triangle, different where colours, materials or pieces of images differ: simplification keeps apart what has
-    /// different numbers. Empty where there is nothing to keep apart.
-    pub(super) fn classes(&self) -> Vec<u32> {
-        match self.texture {
-            Some(_) => classes_of(self.mesh, self.colours, self.texture),
-            None => classes(self.colours),
-        }
     }
 }
 

@@ -2,12 +2,30 @@
 
 use serde::Serialize;
 
-use super::VoxelSize;
 use crate::backend::Backend;
 use crate::fit::FitOptions;
 use crate::orient::OrientMode;
 use crate::sdf::{RobustOptions, Trust};
 use crate::vote::VoteRule;
+
+/// The voxel size of a pipeline. There is no default: it decides what is kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum VoxelSize {
+    /// This many voxels along the longest side of the operands' common bounding box.
+    Along(u32),
+    /// This spacing, model units.
+    Length(f64),
+}
+
+impl VoxelSize {
+    /// The spacing, model units, for operands whose common bounding box has this longest side.
+    pub fn spacing(self, longest: f64) -> f64 {
+        match self {
+            Self::Along(count) => longest / f64::from(count),
+            Self::Length(h) => h,
+        }
+    }
+}
 
 /// Options of [`repair`](super::repair) and [`boolean`](super::boolean).
 #[derive(Debug, Clone, Copy, PartialEq)]

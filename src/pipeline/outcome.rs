@@ -1,8 +1,8 @@
 //! What comes out of a pipeline.
 
 use super::frame::Frame;
-use super::kind::{TriangleCounts, kinds_of};
-use super::{Operand, Report, colours, textures};
+use super::kind::kinds_of;
+use super::{Operand, Report, TriangleCounts, TriangleKind, TriangleSource, colours, textures};
 use crate::io::{Colours, TextureMap};
 use crate::lattice::Lattice;
 use crate::mesh::{Solid, SolidError, TriMesh};
@@ -23,20 +23,6 @@ pub struct Outcome {
     pub lattice: Lattice,
     /// What was found and done.
     pub report: Report,
-}
-
-/// Where a triangle of the result comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TriangleSource {
-    /// It lies on a triangle of an operand.
-    Operand {
-        /// Number of the operand, from 0.
-        operand: u32,
-        /// Number of the triangle in it.
-        triangle: u32,
-    },
-    /// It closes a hole, or morphology has made it: no triangle of an operand is there.
-    Closed,
 }
 
 /// A result before it is judged.
@@ -80,6 +66,12 @@ impl Draft {
 }
 
 impl Outcome {
+    /// What each triangle is: kept, rebuilt or made up. `operands`: those that the outcome was made of, in the same order.
+    pub fn kinds<'a>(&self, operands: impl IntoIterator<Item: Into<Operand<'a>>>) -> Vec<TriangleKind> {
+        let operands: Vec<&TriMesh> = operands.into_iter().map(|operand| operand.into().mesh).collect();
+        kinds_of(&self.solid, &self.sources, &operands)
+    }
+
     /// The judged result without the judgement.
     pub(super) fn into_draft(self) -> Draft {
         let Self { solid, sources, lattice, report, .. } = self;

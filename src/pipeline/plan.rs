@@ -6,8 +6,7 @@ use serde::Serialize;
 use super::apart::Apart;
 use super::frame::Frame;
 use super::outlook::Outlook;
-use super::{BooleanError, Operand, Options, SurfaceOptions, VoxelSize, sizing};
-use crate::digits;
+use super::{BooleanError, LimitError, Operand, Options, SurfaceOptions, VoxelSize, sizing};
 use crate::lattice::Lattice;
 use crate::ldi::{Expression, MAX_CROSSINGS, MAX_TRIANGLES};
 use crate::mesh::{Bounds, TriMesh};
@@ -37,48 +36,6 @@ impl Plan {
     pub fn then(self, next: Self) -> Self {
         Self { memory: self.memory.max(next.memory), seconds: self.seconds + next.seconds, ..next }
     }
-}
-
-/// Why a run would be beyond what there is.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum LimitError {
-    /// There are more triangles or vertices than can be numbered.
-    #[error(
-        "{triangles} triangles over {vertices} vertices are more than the {MAX_TRIANGLES} triangles that are possible: \
-         repair the parts one by one"
-    )]
-    Triangles {
-        /// Triangles of all operands.
-        triangles: usize,
-        /// Their vertices.
-        vertices: usize,
-    },
-    /// The rays would cross the surface more often than can be numbered.
-    #[error(
-        "the surface would be crossed {crossings:.1e} times, more than can be numbered: \
-         use a larger voxel, or look for faces that lie on one another in thousands"
-    )]
-    Crossings {
-        /// How often, about.
-        crossings: f64,
-    },
-    /// More memory would be needed than allowed.
-    #[error("about {} MB would be needed and {} MB are allowed{}", needed / 1_000_000, allowed / 1_000_000, fits(voxel_that_fits))]
-    Memory {
-        /// Estimated peak, bytes.
-        needed: u64,
-        /// The cap, bytes.
-        allowed: u64,
-        /// A voxel size that fits, model units; `None` when no size does.
-        voxel_that_fits: Option<f64>,
-    },
-}
-
-fn fits(voxel: &Option<f64>) -> String {
-    voxel.as_ref().map_or_else(
-        || "; no voxel size would fit".into(),
-        |h| format!("; a voxel of {} would fit", digits::rounded_up(*h)),
-    )
 }
 
 /// Bytes of the program itself, its threads and what it reads into.

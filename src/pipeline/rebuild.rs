@@ -2,9 +2,9 @@
 
 use glam::{DVec3, IVec3};
 
+use super::account::{refuse_scattered, why_nothing};
 use super::apart::{Standing, touch};
 use super::crumbs::without_crumbs;
-use super::nothing::{refuse_scattered, why_nothing};
 use super::stages::Stages;
 use super::{BooleanError, Draft, NothingEnclosed, Options, Report, VoxelSize, Warning, plan, refine, sizing};
 use crate::contour::{ContourOptions, contour};

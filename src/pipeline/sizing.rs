@@ -1,5 +1,6 @@
 //! How large voxels are, and the lattices that they make.
 
+use super::VoxelSize;
 use super::frame::Frame;
 use crate::digits;
 use crate::lattice::Lattice;
@@ -16,25 +17,6 @@ pub const MAX_RESOLUTION: u32 = MAX_VOXELS as u32 - 16;
 
 /// A voxel that is suggested is this much larger than the finest, so that it can be rounded to two digits and still be typed.
 pub(super) const TYPED: f64 = 1.1;
-
-/// The voxel size of a pipeline. There is no default: it decides what is kept.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum VoxelSize {
-    /// This many voxels along the longest side of the operands' common bounding box.
-    Along(u32),
-    /// This spacing, model units.
-    Length(f64),
-}
-
-impl VoxelSize {
-    /// The spacing, model units, for operands whose common bounding box has this longest side.
-    pub fn spacing(self, longest: f64) -> f64 {
-        match self {
-            Self::Along(count) => longest / f64::from(count),
-            Self::Length(h) => h,
-        }
-    }
-}
 
 /// Why there can be no lattice. Lengths are in model units.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

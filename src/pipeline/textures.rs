@@ -42,6 +42,17 @@ pub fn classes_of(mesh: &TriMesh, colours: Option<&Colours>, texture: Option<&Te
     if all.iter().all(|number| *number == 0) { Vec::new() } else { all }
 }
 
+impl Operand<'_> {
+    /// A number for each triangle, different where colours, materials or pieces of images differ: simplification keeps apart what has
+    /// different numbers. Empty where there is nothing to keep apart.
+    pub(super) fn classes(&self) -> Vec<u32> {
+        match self.texture {
+            Some(_) => classes_of(self.mesh, self.colours, self.texture),
+            None => classes(self.colours),
+        }
+    }
+}
+
 /// The textures of a result, from those of the operands; `None` when no operand has any. A triangle that is an operand's has what that has;
 /// one that is made anew has the coordinates of its corners projected onto the triangle that it lies on, or onto that of the same piece of the texture
 /// under the corner; and one that is made up those of the nearest triangle.

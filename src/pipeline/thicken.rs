@@ -9,7 +9,10 @@ use super::morphology::plan_offsets;
 use super::offsets::{Job, check_offsets, usable, volume};
 use super::plan::{Offsets, area};
 use super::stages::Stages;
-use super::{BooleanError, Changed, MorphologyError, Plan, Report, SurfaceOptions, TriangleSource, boolean, sizing};
+use super::{
+    BooleanError, Changed, MorphologyError, Plan, Report, SurfaceOptions, ThickenReport, TriangleSource, boolean,
+    sizing,
+};
 use crate::digits;
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, IndexError, Pseudonormals, Solid, TriMesh};
@@ -49,22 +52,6 @@ pub struct ThickenOptions {
     pub side: SheetSide,
     /// How the new surface is made.
     pub surface: SurfaceOptions,
-}
-
-/// What was too thin.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct ThickenReport {
-    /// The least thickness, model units.
-    pub least: f64,
-    /// Area of the surface of the solid whose wall is thinner, square model units; both sides count.
-    pub thin_area: f64,
-    /// Area of the open sheets.
-    pub sheet_area: f64,
-    /// Volume of the solid before, cubic model units; 0 where there was none.
-    pub volume_before: f64,
-    /// Volume after.
-    pub volume_after: f64,
 }
 
 /// Why walls could not grow. Lengths are in model units.

@@ -4,12 +4,8 @@ use std::fmt;
 
 use serde::{Serialize, Serializer};
 
+use super::ThinReport;
 use super::nothing::{NothingEnclosed, keeping_voxel};
-use super::report::{Report, ThinReport};
-
-/// Shares of rays and spans above which a user should know.
-const MANY_LOST: f64 = 0.02;
-const MANY_SILENT: f64 = 0.25;
 
 /// One thing that a user should know. Its words are those of `Display`, and in JSON too.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,26 +29,6 @@ pub enum Warning {
     },
     /// Beside the shells that stay as they are, the rest of the input encloses nothing.
     NothingMore(NothingEnclosed),
-}
-
-impl Warning {
-    /// Those of a report that is complete but for them.
-    pub(super) fn of(report: &Report) -> Vec<Self> {
-        let mut warnings = Vec::new();
-        let share = |part: usize, all: usize| part as f64 / all.max(1) as f64;
-        let lost = share(report.thin.lost_spans, report.thin.spans);
-        if lost > MANY_LOST && !report.kept_all() {
-            warnings.push(Self::ThinWalls { share: lost, thin: report.thin.clone() });
-        }
-        let silent = share(report.ldi.silent_rays, report.ldi.rays);
-        if silent > MANY_SILENT {
-            warnings.push(Self::SilentRays { share: silent });
-        }
-        if let Some(reason) = &report.ldi.made_by.fallback {
-            warnings.push(Self::Fallback { reason: reason.clone() });
-        }
-        warnings
-    }
 }
 
 impl fmt::Display for Warning {
@@ -81,19 +57,5 @@ impl fmt::Display for Warning {
 impl Serialize for Warning {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn why_the_main_processor_stepped_in_is_a_line_of_the_report() {
-        let mut report = Report::default();
-        assert!(Warning::of(&report).is_empty());
-        report.ldi.made_by.fallback = Some("it melted".into());
-        let lines = Warning::of(&report);
-        assert!(lines.len() == 1 && lines[0].to_string().contains("it melted"), "{lines:?}");
     }
 }

@@ -1,8 +1,7 @@
 //! Why a result has no inside.
 
-use super::report::ThinReport;
+use super::ThinReport;
 use crate::digits;
-use crate::survey::Survey;
 
 /// Why nothing is enclosed. The sentence of each says what to try. Lengths are in model units.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -42,29 +41,6 @@ pub enum NothingEnclosed {
         /// What the largest encloses.
         largest: f64,
     },
-}
-
-/// With a larger share of silent rays there is no solid to speak of: of the real files that are
-/// worth repairing `beetle` has the largest, 75 %; a hundred unrelated triangles have 91 %.
-const MOST_SILENT: f64 = 0.85;
-
-/// Refuses a soup of which nearly all rays are silent.
-pub(super) fn refuse_scattered(survey: &Survey) -> Result<(), NothingEnclosed> {
-    let share = survey.silent_share();
-    if share <= MOST_SILENT { Ok(()) } else { Err(NothingEnclosed::Scattered { share }) }
-}
-
-/// Why the contour of a survey is empty. `finest`: the smallest voxel that is possible.
-pub(super) fn why_nothing(survey: &Survey, finest: f64) -> NothingEnclosed {
-    let (thin, voxel) = (ThinReport::of(survey, finest), survey.lattice.h);
-    if 2 * survey.silent_rays() > survey.count.rays {
-        return NothingEnclosed::OpenSheet;
-    }
-    match (thin.spans, survey.soup.operands.count()) {
-        (0, 1) => NothingEnclosed::Nothing,
-        (0, _) => NothingEnclosed::NoCommonPart,
-        _ => NothingEnclosed::ThinnerThanVoxel { voxel, thin },
-    }
 }
 
 /// The voxel that would hold thin walls, as the end of a sentence.
