@@ -12,6 +12,7 @@ use crate::progress::Stopped;
 
 /// The exit status of the process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Exit {
     /// Done, and verified on the written file.
@@ -62,6 +63,7 @@ pub struct Asked {
 
 /// Why a run ended without its result: a sentence, perhaps something to try, and the exit status.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Failure {
     /// The exit status.
     #[serde(skip)]
@@ -135,7 +137,7 @@ impl Failure {
             Trouble::Voxel => Self::new(if asked.voxel { Exit::Usage } else { Exit::Input }, error.to_string()),
             Trouble::Input => Self::input(error.to_string()),
             Trouble::NoRoom => Self::new(Exit::Memory, error.to_string()),
-            Trouble::Device | Trouble::Call => Self::internal(error.to_string()),
+            Trouble::Device | Trouble::Call | Trouble::Index => Self::internal(error.to_string()),
         };
         match error.hint() {
             Some(hint) => failure.hint(hint),
@@ -180,6 +182,7 @@ impl From<SolidError> for Failure {
     fn from(error: SolidError) -> Self {
         match error {
             SolidError::Stopped(stopped) => Self::from(stopped),
+            SolidError::Index(error) => Self::internal(error.to_string()),
             SolidError::NotSolid(what) => Self::not_solid(&what.validity),
         }
     }

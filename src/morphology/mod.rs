@@ -32,6 +32,7 @@ use crate::sdf::exact::ExactError;
 
 /// What is done to a solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Operation {
     /// All points within the radius of the solid.

@@ -23,6 +23,7 @@ pub enum OrientMode {
 
 /// What cleaning and orientation did.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OrientReport {
     /// Triangles that were dropped because they have no area or a repeated vertex.
     pub degenerate_dropped: usize,

@@ -4,6 +4,8 @@ use super::{
     BooleanError, CanalError, DistanceError, FieldError, HollowError, LimitError, MorphologyError, ThickenError,
     ThicknessError,
 };
+use crate::field::FillError;
+use crate::field::language::BuildError;
 use crate::mesh::NotSolid;
 use crate::progress::Stopped;
 
@@ -23,6 +25,8 @@ pub enum Trouble<'a> {
         /// Its number, from 0.
         operand: usize,
     },
+    /// A mesh that the caller made refers to vertices that it does not have.
+    Index,
     /// More memory would be needed than allowed.
     Memory(&'a LimitError),
     /// There is no memory left.
@@ -61,6 +65,7 @@ impl Advice for BooleanError {
             Self::Stopped(stopped) => Trouble::Stopped(*stopped),
             Self::Empty { operand } => Trouble::Empty { operand: *operand },
             Self::MissingOperand { .. } => Trouble::Call,
+            Self::Index { .. } => Trouble::Index,
             Self::Lattice(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
             Self::Nothing(_) => Trouble::Input,
@@ -84,6 +89,7 @@ impl Advice for MorphologyError {
             Self::Radius { .. } => Trouble::Options,
             Self::Lattice(_) | Self::Distance(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
+            Self::Index(_) => Trouble::Index,
             Self::NothingLeft { .. } | Self::AllTooThin { .. } => Trouble::Input,
             Self::NotSolid(what) => Trouble::NotSolid(what),
         }
@@ -108,6 +114,7 @@ impl Advice for ThickenError {
         match self {
             Self::WallsForVoxel { .. } | Self::WallsForModel { .. } => Trouble::Options,
             Self::Empty => Trouble::Empty { operand: 0 },
+            Self::Index(_) => Trouble::Index,
             Self::Offset(error) => error.trouble(),
             Self::Union(error) => error.trouble(),
         }
@@ -135,8 +142,10 @@ impl Advice for DistanceError {
         match self {
             Self::Stopped(stopped) => Trouble::Stopped(*stopped),
             Self::Empty => Trouble::Empty { operand: 0 },
+            Self::Index(_) => Trouble::Index,
             Self::Lattice(_) | Self::Exact(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
+            Self::NotClosed { .. } => Trouble::Options,
             Self::Levels(_) => Trouble::NoRoom,
             Self::Nothing(_) => Trouble::Input,
             Self::Device { .. } => Trouble::Device,
@@ -146,7 +155,21 @@ impl Advice for DistanceError {
     fn hint(&self) -> Option<String> {
         match self {
             Self::Device { hint, .. } => Some(hint.clone()),
+            Self::NotClosed { .. } => Some("repair it first (`meshwright repair`), or --method exact".into()),
             _ => None,
+        }
+    }
+}
+
+impl Advice for BuildError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::Stopped(stopped) | Self::Fill(FillError::Stopped(stopped)) => Trouble::Stopped(*stopped),
+            Self::Fill(FillError::Memory { .. }) => Trouble::NoRoom,
+            Self::Lattice { .. } => Trouble::Voxel,
+            Self::Filter(_) | Self::Ramp { .. } => Trouble::Options,
+            Self::Incomplete { .. } => Trouble::Call,
+            Self::Endless | Self::Nothing | Self::NoSize | Self::NoRadius | Self::NoBox => Trouble::Input,
         }
     }
 }
@@ -157,14 +180,12 @@ impl Advice for FieldError {
             Self::Stopped(stopped) => Trouble::Stopped(*stopped),
             Self::Lattice(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
-            Self::Filter(_) | Self::NoRamp { .. } => Trouble::Options,
-            Self::MissingField => Trouble::Call,
+            Self::Build(error) => error.trouble(),
+            Self::Index(_) => Trouble::Index,
             Self::Repair(error) => error.trouble(),
             Self::Distance(error) => error.trouble(),
             Self::NotSolid(what) => Trouble::NotSolid(what),
-            Self::Nothing | Self::NothingOnLattice | Self::Endless | Self::NoSize | Self::NoRadius | Self::NoBox => {
-                Trouble::Input
-            }
+            Self::NothingOnLattice => Trouble::Input,
         }
     }
 
@@ -182,6 +203,7 @@ impl Advice for ThicknessError {
         match self {
             Self::Stopped(stopped) => Trouble::Stopped(*stopped),
             Self::Empty => Trouble::Empty { operand: 0 },
+            Self::Index(_) => Trouble::Index,
             Self::Lattice(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
         }

@@ -13,9 +13,9 @@ use crate::backend::{self, Backend, BackendReport, PrismError};
 use crate::digits;
 use crate::lattice::{BRICK, DistanceField, Lattice, Slot};
 use crate::ldi::{Expression, MAX_VOXELS};
-use crate::mesh::TriMesh;
+use crate::mesh::{IndexError, TriMesh, ValidateOptions, Validity, validate};
 use crate::orient::{OrientMode, OrientReport};
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 use crate::sdf::exact::{self, Band, ExactError, ExactOptions, Sign};
 use crate::sdf::{self, Levels, LevelsError, RobustOptions, characteristics, levels_memory};
 use crate::survey::{Cast, Soup, SoupError, Survey};
@@ -35,6 +35,7 @@ const WINDING_SECONDS: f64 = 150e-9;
 
 /// How the distance is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum DistanceMethod {
     /// To the nearest triangle, exactly.
@@ -51,6 +52,7 @@ pub enum DistanceMethod {
 
 /// What tells inside from outside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum DistanceSign {
     /// The pseudonormal at the nearest point of the mesh as it is: for closed, oriented ones.
@@ -61,6 +63,31 @@ pub enum DistanceSign {
     Winding,
     /// The slice contours of the surface in the lattice's planes along z, gaps closed, after cleaning and orientation.
     Levels,
+}
+
+impl DistanceMethod {
+    /// As people call it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Exact => "exact distance",
+            Self::Characteristics => "characteristics",
+            Self::Prism => "prisms",
+            Self::Robust => "votes",
+        }
+    }
+
+    /// Whether it is for closed, oriented surfaces only.
+    pub fn is_for_closed(self) -> bool {
+        matches!(self, Self::Characteristics | Self::Prism)
+    }
+}
+
+impl DistanceSign {
+    /// The sign that suits a mesh of this state: pseudonormals where they are exact, votes where the mesh is a soup.
+    pub fn suited(validity: &Validity, method: DistanceMethod) -> Self {
+        let exact = validity.is_valid() && method == DistanceMethod::Exact;
+        if exact || method.is_for_closed() { Self::Pseudonormal } else { Self::Votes }
+    }
 }
 
 /// Options of [`distance`].
@@ -84,6 +111,20 @@ pub struct DistanceOptions {
 }
 
 impl DistanceOptions {
+    /// The exact distance over the whole lattice, with votes for the sign: right for any mesh. [`DistanceSign::suited`] chooses what is faster
+    /// where it is right as well.
+    pub fn new(voxel: VoxelSize) -> Self {
+        Self {
+            voxel,
+            band: None,
+            method: DistanceMethod::Exact,
+            sign: DistanceSign::Votes,
+            backend: Backend::default(),
+            orient: OrientMode::Auto,
+            max_memory: None,
+        }
+    }
+
     /// Whether rays vote.
     fn votes(&self) -> bool {
         match self.method {
@@ -105,6 +146,7 @@ pub struct DistanceOutcome {
 
 /// The account of one run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DistanceReport {
     /// Position of the first voxel, model units.
     pub origin: [f64; 3],
@@ -126,12 +168,14 @@ pub struct DistanceReport {
     pub vote: Option<VoteReport>,
     /// Which processor made the field, where there is a choice.
     pub made_by: Option<BackendReport>,
-    /// Wall-clock time of each stage, in order.
+    /// Wall-clock time of each stage, in order. Not written with the rest, as in [`super::Report::stages`].
+    #[serde(skip)]
     pub stages: Vec<StageTime>,
 }
 
 /// What a field would cost, before it is made.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DistancePlan {
     /// Voxel spacing, model units.
     pub voxel: f64,
@@ -156,6 +200,17 @@ pub enum DistanceError {
     /// There is no triangle with an area.
     #[error("there is no triangle with an area")]
     Empty,
+    /// A triangle refers to a vertex that is not there.
+    #[error(transparent)]
+    Index(#[from] IndexError),
+    /// The method needs a closed, oriented surface, and this is none.
+    #[error("a field by {} needs a closed, oriented surface. {problem}", method.word())]
+    NotClosed {
+        /// The method.
+        method: DistanceMethod,
+        /// What is wrong with the surface, as a sentence.
+        problem: String,
+    },
     /// The voxel size, or the band, cannot be used with these coordinates.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
@@ -196,6 +251,8 @@ pub fn distance(
     options: &DistanceOptions,
     progress: &Progress,
 ) -> Result<DistanceOutcome, DistanceError> {
+    input.check()?;
+    check_closed(input, options.method, progress)?;
     let frame = input.bounds().map_or_else(Frame::default, |bounds| Frame::around(&bounds));
     let input = &*frame.local(input);
     let (lattice, band) = place(input, options)?;
@@ -208,15 +265,15 @@ pub fn distance(
     let mut report = DistanceReport::default();
     let field = match (options.method, options.sign) {
         (DistanceMethod::Exact, DistanceSign::Pseudonormal) => {
-            stages.begin("distance")?;
+            stages.begin(Stage::Distance)?;
             run.exact(input, Sign::Pseudonormal)?
         }
         (DistanceMethod::Characteristics, _) => {
-            stages.begin("distance")?;
+            stages.begin(Stage::Distance)?;
             run.characteristics(input)?
         }
         (DistanceMethod::Prism, _) => {
-            stages.begin("distance")?;
+            stages.begin(Stage::Distance)?;
             let (field, made_by) = run.prism(input)?;
             report.made_by = Some(made_by);
             field
@@ -229,6 +286,20 @@ pub fn distance(
     outcome.report.vote.iter_mut().for_each(|vote| frame.votes(vote));
     outcome.describe(band);
     Ok(outcome)
+}
+
+/// Refuses a surface that the method would give a wrong field for.
+fn check_closed(input: &TriMesh, method: DistanceMethod, progress: &Progress) -> Result<(), DistanceError> {
+    if !method.is_for_closed() {
+        return Ok(());
+    }
+    let look = ValidateOptions { self_intersections: false, weld: true };
+    let validity = validate(input, &look, progress)?;
+    if validity.is_oriented_manifold() {
+        return Ok(());
+    }
+    let problem = validity.problems().first().map_or_else(|| "It is not.".into(), String::clone);
+    Err(DistanceError::NotClosed { method, problem })
 }
 
 /// The lattice, grown by the band, and the band in h.
@@ -349,34 +420,34 @@ impl Making<'_> {
         report: &mut DistanceReport,
     ) -> Result<DistanceField, DistanceError> {
         let (progress, orient, lattice) = (self.progress, self.options.orient, &self.lattice);
-        stages.begin("orient")?;
+        stages.begin(Stage::Orient)?;
         let soup = Soup::of(&[input], orient, progress)?;
-        stages.begin("ldi")?;
+        stages.begin(Stage::Ldi)?;
         let mut cast = Cast::on_cpu(soup, lattice, orient, progress)?;
         report.orient = cast.soup.reports.first().cloned();
         let expression = Expression::Operand(0);
         match (self.options.method, self.options.sign) {
             (DistanceMethod::Exact, DistanceSign::Winding) => {
                 cast.layers.clear();
-                stages.begin("distance")?;
+                stages.begin(Stage::Distance)?;
                 return self.exact(&cast.soup.mesh, Sign::Winding(&cast.winding(progress), &expression));
             }
             (DistanceMethod::Exact, DistanceSign::Levels) => {
                 cast.layers.clear();
-                stages.begin("levels")?;
+                stages.begin(Stage::Levels)?;
                 let levels = Levels::of(&cast.soup.mesh, lattice, progress)?;
-                stages.begin("distance")?;
+                stages.begin(Stage::Distance)?;
                 return self.exact(&cast.soup.mesh, Sign::Levels(&levels));
             }
             _ => {}
         }
-        stages.begin("spans")?;
+        stages.begin(Stage::Spans)?;
         let mut survey = Survey::of(cast, &expression, progress)?;
         refuse_scattered(&survey)?;
-        stages.begin("vote")?;
+        stages.begin(Stage::Vote)?;
         let votes = survey.votes(VoteRule::Winding, &survey.winding(progress), progress)?;
         report.vote = Some(doubts(&votes, lattice));
-        stages.begin("distance")?;
+        stages.begin(Stage::Distance)?;
         match self.options.method {
             DistanceMethod::Exact | DistanceMethod::Characteristics | DistanceMethod::Prism => {
                 self.exact(&survey.soup.mesh, Sign::Votes(&votes))

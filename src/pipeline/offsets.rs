@@ -12,7 +12,7 @@ use crate::lattice::Lattice;
 use crate::ldi::Evidence;
 use crate::mesh::{Bounds, Solid, TriMesh, ValidateOptions, validate};
 use crate::morphology::{Balls, Centres, Gauge, Offset, Region, Remain, closed, offset, reached};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stage};
 use crate::sdf::exact::{ExactDistance, PointSign};
 
 /// Voxels of a radius, at least: of less, a ball passes between voxels; back and forth, chords of less are off by more than a
@@ -130,10 +130,10 @@ impl Job<'_> {
         reach: f64,
         stages: &mut Stages<'_>,
     ) -> Result<Made, MorphologyError> {
-        stages.begin("offset")?;
+        stages.begin(Stage::Offset)?;
         let lattice = self.lattice(level.max(0.0) * reach)?;
         let offset = offset(body, level, &lattice, self.progress)?;
-        stages.begin("fit")?;
+        stages.begin(Stage::Fit)?;
         let off = |p| (body.at(p, level.abs() + self.h).0 - level).abs();
         self.fitted(
             (offset, &lattice),
@@ -157,7 +157,7 @@ impl Job<'_> {
         radius: f64,
         stages: &mut Stages<'_>,
     ) -> Result<Centres, MorphologyError> {
-        stages.begin("first offset")?;
+        stages.begin(Stage::FirstOffset)?;
         let lattice = self.lattice(radius.max(0.0))?;
         let mut there = offset(body, radius, &lattice, self.progress)?;
         let between = std::mem::take(&mut there.remains);
@@ -186,14 +186,14 @@ impl Job<'_> {
         region: Option<&Region<'_>>,
         stages: &mut Stages<'_>,
     ) -> Result<Made, MorphologyError> {
-        stages.begin("second offset")?;
+        stages.begin(Stage::SecondOffset)?;
         let lattice = self.lattice(0.0)?;
         let back = closed(body, balls, &lattice, region, self.progress)?;
         let reached = reached(body, radius, &lattice, region, self.progress)?;
         if !back.changed && reached.iter().all(|reached| reached.touched == reached.tried) {
             return Ok(self.unchanged());
         }
-        stages.begin("fit")?;
+        stages.begin(Stage::Fit)?;
         let evidence = Evidence::of_samples(reached.iter().map(|r| (r.tried, r.touched)));
         let off = |p| {
             let own = body.at(p, self.h).0.abs();

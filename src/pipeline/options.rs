@@ -49,6 +49,7 @@ pub struct SurfaceOptions {
 
 /// What numbers a result may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Precision {
     /// Every coordinate is an `f32`, so that STL and glTF hold it unchanged, and the result is valid with these; only for operands far from the
@@ -118,5 +119,29 @@ impl From<SurfaceOptions> for Options {
     fn from(surface: SurfaceOptions) -> Self {
         let SurfaceOptions { voxel, collapse, fit, max_memory, precision } = surface;
         Self { collapse, fit, max_memory, precision, ..Self::new(voxel) }
+    }
+}
+
+impl From<VoxelSize> for Options {
+    fn from(voxel: VoxelSize) -> Self {
+        Self::new(voxel)
+    }
+}
+
+impl From<&Self> for Options {
+    fn from(options: &Self) -> Self {
+        *options
+    }
+}
+
+impl From<VoxelSize> for SurfaceOptions {
+    fn from(voxel: VoxelSize) -> Self {
+        Self::new(voxel)
+    }
+}
+
+impl From<&Self> for SurfaceOptions {
+    fn from(options: &Self) -> Self {
+        *options
     }
 }

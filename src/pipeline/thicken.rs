@@ -12,9 +12,9 @@ use super::stages::Stages;
 use super::{BooleanError, Changed, MorphologyError, Plan, Report, SurfaceOptions, TriangleSource, boolean, sizing};
 use crate::digits;
 use crate::ldi::Expression;
-use crate::mesh::{Bounds, Pseudonormals, Solid, TriMesh};
+use crate::mesh::{Bounds, IndexError, Pseudonormals, Solid, TriMesh};
 use crate::morphology::{Gauge, OffsetError, middles};
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 
 /// Walls are at least this many voxels thick: of less the lattice makes no round edge.
 const LEAST_VOXELS: f64 = 4.0;
@@ -28,6 +28,7 @@ const APART: f64 = 1.0;
 
 /// On which side of an open sheet there will be material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum SheetSide {
     /// Half of the thickness on either side.
@@ -52,6 +53,7 @@ pub struct ThickenOptions {
 
 /// What was too thin.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThickenReport {
     /// The least thickness, model units.
     pub least: f64,
@@ -90,6 +92,9 @@ pub enum ThickenError {
         /// The longest side of the model's box.
         longest: f64,
     },
+    /// A triangle of the surface refers to a vertex that is not there.
+    #[error(transparent)]
+    Index(#[from] IndexError),
     /// There is neither a solid nor a sheet.
     #[error("there is no triangle with an area")]
     Empty,
@@ -125,13 +130,14 @@ pub fn thicken(
     options: &ThickenOptions,
     progress: &Progress,
 ) -> Result<Changed, ThickenError> {
+    surface.check()?;
     let (min, h) = checked(solid, surface, options)?;
     let given: Vec<&TriMesh> = solid.iter().map(|solid| solid.mesh()).chain([surface]).collect();
     let frame = Frame::of(&given, &options.surface);
     let local = solid.map(|solid| frame.local(solid));
     let fixed = options.surface.with_voxel(h);
     let mut stages = Stages::new(progress);
-    stages.begin("thin walls")?;
+    stages.begin(Stage::ThinWalls)?;
     let body = local.as_ref().map(|solid| Gauge::new(solid, None));
     let (mut thin, thin_area) = match &body {
         Some(body) => middles(body, min, h, progress)?,

@@ -6,12 +6,13 @@ use super::frame::Frame;
 use super::sizing::{self, MAX_RESOLUTION, TYPED};
 use super::{LatticeError, LimitError, Options, plan};
 use crate::ldi::{Expression, THIN};
-use crate::mesh::TriMesh;
-use crate::progress::{Progress, Stopped};
+use crate::mesh::{IndexError, TriMesh};
+use crate::progress::{Progress, Stage, Stopped};
 use crate::survey::{Cast, Soup, SoupError, Survey};
 
 /// The widths of walls and gaps, and the voxel that holds them. Model units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThicknessReport {
     /// Voxel spacing of the rays.
     pub voxel: f64,
@@ -32,6 +33,7 @@ pub struct ThicknessReport {
 
 /// How some lengths are distributed, model units.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LengthsReport {
     /// How many there are.
     pub count: usize,
@@ -57,6 +59,9 @@ pub enum ThicknessError {
     /// There is no triangle with an area.
     #[error("there is no triangle with an area")]
     Empty,
+    /// A triangle refers to a vertex that is not there.
+    #[error(transparent)]
+    Index(#[from] IndexError),
     /// The voxel size cannot be used with these coordinates.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
@@ -70,16 +75,17 @@ pub enum ThicknessError {
 /// # Errors
 /// See [`ThicknessError`].
 pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Result<ThicknessReport, ThicknessError> {
+    input.check()?;
     let frame = Frame::of(&[input], &options.surface());
     let mesh = frame.local(input);
     let bounds = sizing::bounds([&*mesh]).map_err(|_| ThicknessError::Empty)?;
     let lattice = sizing::lattice(&bounds, options.voxel)?;
     plan::check_limits(&[&mesh], &lattice, &options.surface(), plan::Offsets::default())?;
-    progress.stage("orient")?;
+    progress.stage(Stage::Orient)?;
     let soup = Soup::of(&[&mesh], options.orient, progress)?;
-    progress.stage("ldi")?;
+    progress.stage(Stage::Ldi)?;
     let cast = Cast::on_cpu(soup, &lattice, options.orient, progress)?;
-    progress.stage("spans")?;
+    progress.stage(Stage::Spans)?;
     let survey = Survey::of(cast, &Expression::Operand(0), progress)?;
     let found = survey.widths();
     let walls = LengthsReport::of(&found.spans, lattice.h);
