@@ -17,14 +17,28 @@ pub struct Submesh {
     pub vertices: Vec<u32>,
 }
 
+/// A part with fewer triangles than one in so many vertices of the whole is numbered by searching a sorted list, a larger one
+/// by a table of all vertices: small parts of large meshes are asked for again and again.
+const SMALL: usize = 16;
+
 impl Submesh {
     /// The part that consists of these triangles over some of `positions`.
     pub(crate) fn of(positions: &[DVec3], mut triangles: Vec<[u32; 3]>) -> Self {
-        let mut number = vec![UNUSED; positions.len()];
-        triangles.iter().flatten().for_each(|&v| number[v as usize] = 0);
-        let vertices: Vec<u32> = (0..number.len() as u32).filter(|&v| number[v as usize] != UNUSED).collect();
-        vertices.iter().zip(0..).for_each(|(&v, n)| number[v as usize] = n);
-        triangles.par_iter_mut().for_each(|t| *t = t.map(|v| number[v as usize]));
+        let vertices = if SMALL * triangles.len() < positions.len() {
+            let mut vertices: Vec<u32> = triangles.iter().flatten().copied().collect();
+            vertices.sort_unstable();
+            vertices.dedup();
+            let number = |v: u32| vertices.partition_point(|&other| other < v) as u32;
+            triangles.iter_mut().for_each(|t| *t = t.map(number));
+            vertices
+        } else {
+            let mut number = vec![UNUSED; positions.len()];
+            triangles.iter().flatten().for_each(|&v| number[v as usize] = 0);
+            let vertices: Vec<u32> = (0..number.len() as u32).filter(|&v| number[v as usize] != UNUSED).collect();
+            vertices.iter().zip(0..).for_each(|(&v, n)| number[v as usize] = n);
+            triangles.par_iter_mut().for_each(|t| *t = t.map(|v| number[v as usize]));
+            vertices
+        };
         let positions = vertices.iter().map(|&v| positions[v as usize]).collect();
         Self { mesh: TriMesh { positions, triangles }, vertices }
     }
@@ -50,5 +64,19 @@ mod tests {
         assert_eq!(part.mesh.triangles, [[1, 2, 3], [3, 1, 0]]);
         assert_eq!(part.mesh.positions, [1.0, 3.0, 4.0, 5.0].map(DVec3::splat));
         assert_eq!(mesh.submesh(&[]), Submesh::default());
+    }
+
+    #[test]
+    fn a_small_part_of_a_large_mesh_is_numbered_alike() {
+        let mut mesh = TriMesh { positions: vec![DVec3::ZERO; 100], triangles: vec![[90, 3, 57], [57, 3, 4]] };
+        (0..100).for_each(|v| mesh.positions[v].x = v as f64);
+        let part = mesh.submesh(&[0, 1]);
+        assert_eq!(part.vertices, [3, 4, 57, 90]);
+        assert_eq!(part.mesh.triangles, [[3, 0, 2], [2, 0, 1]]);
+        mesh.positions.truncate(91);
+        mesh.triangles.extend((0..20).map(|_| [3, 4, 57]));
+        let table = mesh.submesh(&(0..22).collect::<Vec<u32>>());
+        assert_eq!((&table.vertices, &table.mesh.positions), (&part.vertices, &part.mesh.positions));
+        assert_eq!(table.mesh.triangles[..2], part.mesh.triangles);
     }
 }

@@ -61,7 +61,7 @@ pub enum DistanceSign {
     Votes,
     /// The generalised winding number, after cleaning and orientation.
     Winding,
-    /// The outlines of the surface in the lattice's planes along z, gaps closed, after cleaning and orientation.
+    /// The slice contours of the surface in the lattice's planes along z, gaps closed, after cleaning and orientation.
     Levels,
 }
 
@@ -220,7 +220,7 @@ pub enum DistanceError {
     /// The distance could not be found over this lattice.
     #[error(transparent)]
     Exact(ExactError),
-    /// There is no memory for the outlines of the levels.
+    /// There is no memory for the slice contours.
     #[error(transparent)]
     Levels(LevelsError),
     /// The votes find no inside.

@@ -139,11 +139,7 @@ mod tests {
 
     /// The box from the origin to `size`.
     fn cuboid(size: DVec3) -> TriMesh {
-        let positions =
-            (0..8).map(|n| DVec3::new((n & 1) as f64, (n >> 1 & 1) as f64, (n >> 2) as f64) * size).collect();
-        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-        TriMesh { positions, triangles }
+        crate::mesh::shapes::cuboid(DVec3::ZERO, size)
     }
 
     #[test]

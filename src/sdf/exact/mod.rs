@@ -57,7 +57,7 @@ pub enum Sign<'a> {
     Votes(&'a Grid<Votes>),
     /// The winding numbers of the operands of a soup on the same lattice, and what is made of them.
     Winding(&'a Winding<'a>, &'a Expression),
-    /// The outlines of an oriented surface in the planes of the same lattice.
+    /// The slice contours of an oriented surface in the planes of the same lattice.
     Levels(&'a Levels),
 }
 

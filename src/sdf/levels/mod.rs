@@ -87,7 +87,7 @@ impl Levels {
             let cut = surface.cut_by(first, planes.len() / (width * height));
             planes.par_chunks_mut(width * height).zip(&cut).enumerate().try_for_each(|(k, (plane, cut))| {
                 progress.check()?;
-                scan::fill(plane, width, surface.outlines((first + k) as f64, cut));
+                scan::fill(plane, width, surface.contours((first + k) as f64, cut));
                 Ok::<_, Stopped>(())
             })?;
         }
@@ -132,7 +132,7 @@ struct Cut {
     rim: Vec<u32>,
 }
 
-/// A directed piece of an outline within its plane.
+/// A directed piece of a slice contour within its plane.
 type Segment = [DVec2; 2];
 
 impl CutSurface {
@@ -175,8 +175,8 @@ impl CutSurface {
         number(low)..number(high)
     }
 
-    /// The closed outlines in plane `z`.
-    fn outlines(&self, z: f64, cut: &Cut) -> Vec<Segment> {
+    /// The closed slice contours in plane `z`.
+    fn contours(&self, z: f64, cut: &Cut) -> Vec<Segment> {
         let of_triangles = cut.triangles.iter().map(|&n| self.segment(self.triangles[n as usize], z));
         let mut segments: Vec<Segment> = of_triangles.collect();
         let (mut ends, mut beginnings) = (Vec::new(), Vec::new());

@@ -10,10 +10,10 @@ struct RowCrossing {
     turn: i32,
 }
 
-/// Sets the bits that closed outlines wind around in the positive sense. `plane` has rows of `width` bytes.
-pub(super) fn fill(plane: &mut [u8], width: usize, outlines: Vec<Segment>) {
+/// Sets the bits that closed contours wind around in the positive sense. `plane` has rows of `width` bytes.
+pub(super) fn fill(plane: &mut [u8], width: usize, contours: Vec<Segment>) {
     let mut crossings = Vec::new();
-    outlines.into_iter().for_each(|segment| cross(segment, plane.len() / width, &mut crossings));
+    contours.into_iter().for_each(|segment| cross(segment, plane.len() / width, &mut crossings));
     crossings.sort_unstable_by(|a, b| a.row.cmp(&b.row).then(a.x.total_cmp(&b.x)));
     for row in crossings.chunk_by(|a, b| a.row == b.row) {
         let start = row[0].row as usize * width;
@@ -68,7 +68,7 @@ mod tests {
     use glam::DVec2;
     use proptest::prelude::*;
 
-    fn outline(points: &[[f64; 2]]) -> Vec<Segment> {
+    fn contour(points: &[[f64; 2]]) -> Vec<Segment> {
         (0..points.len()).map(|n| [points[n], points[(n + 1) % points.len()]].map(DVec2::from)).collect()
     }
 
@@ -77,27 +77,27 @@ mod tests {
     }
 
     proptest! {
-        /// Any closed outline, also one that crosses itself: a voxel's bit is set where the turning angle of the outline is positive.
+        /// Any closed contour, also one that crosses itself: a voxel's bit is set where the turning angle of the contour is positive.
         #[test]
         fn bits_are_winding_numbers(points in prop::collection::vec([-3.0..27.0, -3.0..27.0], 3..9)) {
             let mut plane = vec![0; 3 * 24];
-            fill(&mut plane, 3, outline(&points));
+            fill(&mut plane, 3, contour(&points));
             for (x, y) in (0..24).flat_map(|x| (0..24).map(move |y| (x, y))) {
                 let p = DVec2::new(x as f64, y as f64);
                 let turned = |[a, b]: Segment| (a - p).perp_dot(b - p).atan2((a - p).dot(b - p));
-                let angle: f64 = outline(&points).into_iter().map(turned).sum();
+                let angle: f64 = contour(&points).into_iter().map(turned).sum();
                 prop_assert_eq!(is_set(&plane, 3, x, y), angle > 1.0, "{} {}", x, y);
             }
         }
     }
 
     #[test]
-    fn voxels_on_the_outline_belong_to_one_side_of_it() {
+    fn voxels_on_the_contour_belong_to_one_side_of_it() {
         let (left, right) =
             ([[2.0, 1.0], [9.0, 1.0], [9.0, 5.0], [2.0, 5.0]], [[9.0, 1.0], [14.0, 1.0], [14.0, 5.0], [9.0, 5.0]]);
         let planes = [left, right].map(|points| {
             let mut plane = vec![0; 2 * 8];
-            fill(&mut plane, 2, outline(&points));
+            fill(&mut plane, 2, contour(&points));
             plane
         });
         for (x, y) in (0..16).flat_map(|x| (0..8).map(move |y| (x, y))) {
