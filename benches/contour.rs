@@ -4,8 +4,9 @@ use std::sync::{Arc, Mutex};
 
 use divan::Bencher;
 use glam::{DVec3, IVec3};
-use meshwright::contour::{Contour, ContourOptions, Crossing, Edge, Merge, collapse_same_voxel, contour};
-use meshwright::lattice::{Bricks, Grid, Lattice};
+use meshwright::contour::{Contour, ContourOptions, Crossing, Edge, Ground, Merge, collapse_same_voxel, contour};
+use meshwright::lattice::{Bricks, DistanceField, Grid, Lattice, voxel_in_brick};
+use meshwright::mesh::Plane;
 use meshwright::progress::Progress;
 use rustc_hash::FxHashMap;
 
@@ -25,19 +26,19 @@ fn field(p: DVec3) -> f64 {
 }
 
 /// The tangent plane at `p`.
-fn plane(p: DVec3) -> (DVec3, f64) {
+fn plane(p: DVec3) -> Plane {
     let slope = DVec3::AXES.map(|e| field(p + e * 0.01) - field(p - e * 0.01));
     let normal = DVec3::from_array(slope).normalize_or(DVec3::Z);
-    (normal, normal.dot(p))
+    Plane { normal, offset: normal.dot(p) }
 }
 
 /// Everything that is not part of the measured work.
 struct Scene {
     lattice: Lattice,
-    distance: Grid<f32>,
+    distance: DistanceField,
     /// Each crossing has its own plane.
     crossings: FxHashMap<Edge, Crossing>,
-    planes: Vec<(DVec3, f64)>,
+    planes: Vec<Plane>,
 }
 
 impl Scene {
@@ -55,9 +56,10 @@ impl Scene {
         let bricks = distance.bricks.clone();
         for (values, &b) in distance.values.iter_mut().zip(bricks.active()) {
             for (k, value) in (0..).zip(values) {
-                *value = field((b * 8 + IVec3::new(k & 7, k >> 3 & 7, k >> 6)).as_dvec3()) as f32;
+                *value = field((b * 8 + voxel_in_brick(k)).as_dvec3()) as f32;
             }
         }
+        let distance = DistanceField::in_voxels(lattice, distance);
         let mut scene = Self { lattice, distance, crossings: FxHashMap::default(), planes: Vec::new() };
         let seen = Mutex::new(Vec::new());
         let note = |edge: Edge| {
@@ -66,9 +68,9 @@ impl Scene {
             seen.lock().unwrap().push((edge, low / (low - high)));
             None
         };
-        contour(&scene.lattice, &scene.distance, &note, &ContourOptions::default(), &Progress::none()).unwrap();
+        contour(&scene.distance, &note, &ContourOptions::default(), &Progress::none()).unwrap();
         for (triangle, (edge, t)) in (0..).zip(seen.into_inner().unwrap()) {
-            scene.crossings.insert(edge, Crossing { t, triangle });
+            scene.crossings.insert(edge, Crossing { t, triangle: Some(triangle) });
             scene.planes.push(plane(edge.voxel.as_dvec3() + DVec3::AXES[edge.axis as usize] * t));
         }
         scene
@@ -76,7 +78,7 @@ impl Scene {
 
     fn contour(&self) -> Contour {
         let crossing = |edge: Edge| self.crossings.get(&edge).copied();
-        contour(&self.lattice, &self.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap()
+        contour(&self.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap()
     }
 }
 
@@ -89,7 +91,10 @@ fn raw(bencher: Bencher<'_, '_>) {
 #[divan::bench(sample_count = 20)]
 fn collapse(bencher: Bencher<'_, '_>) {
     let scene = Scene::new();
-    let planes = |triangle: u32| scene.planes.get(triangle as usize).copied();
+    let planes = |ground: Ground| match ground {
+        Ground::Triangle(triangle) => scene.planes.get(triangle as usize).copied(),
+        Ground::Plane(_) | Ground::Unknown => None,
+    };
     bencher
         .with_inputs(|| scene.contour())
         .bench_values(|raw| collapse_same_voxel(raw, &scene.lattice, &planes, Merge::All, &Progress::none()).unwrap());

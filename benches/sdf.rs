@@ -15,15 +15,23 @@ fn main() {
 fn robust_field(bencher: Bencher<'_, '_>, resolution: u32) {
     let ready = common::ready(common::torus(256, true), resolution);
     let votes = ready.votes();
-    bencher.bench(|| robust(&ready.spans, &ready.planes, &votes, &RobustOptions::default(), &Progress::none()));
+    bencher.bench(|| {
+        robust(&ready.spans, &ready.planes, (&votes, &ready.lattice), &RobustOptions::default(), &Progress::none())
+    });
 }
 
 #[divan::bench(args = [64, 128])]
 fn march_to_8(bencher: Bencher<'_, '_>, resolution: u32) {
     let ready = common::ready(common::torus(256, false), resolution);
-    let near = robust(&ready.spans, &ready.planes, &ready.votes(), &RobustOptions::default(), &Progress::none());
+    let near = robust(
+        &ready.spans,
+        &ready.planes,
+        (&ready.votes(), &ready.lattice),
+        &RobustOptions::default(),
+        &Progress::none(),
+    );
     let near = near.expect("nobody stops it");
-    bencher.bench(|| march(&near, &ready.lattice, 8.0, &Progress::none()));
+    bencher.bench(|| march(&near, 8.0, &Progress::none()));
 }
 
 #[divan::bench(args = [64, 128, 256])]

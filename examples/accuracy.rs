@@ -12,13 +12,13 @@ use std::error::Error;
 use std::path::Path;
 
 use glam::{DVec3, IVec3};
-use meshwright::lattice::{BRICK, Grid, Lattice};
+use meshwright::lattice::{BRICK, Grid, Lattice, voxel_in_brick};
 use meshwright::ldi::{Expression, Operands, ldis, spans};
 use meshwright::mesh::{Plane, TriMesh};
 use meshwright::pipeline::{Options, VoxelSize, repair};
 use meshwright::progress::Progress;
 use meshwright::sdf::{RobustOptions, Trust, robust};
-use meshwright::vote::{Jury, VoteRule, Winding, WindingTree, vote_near_surface, voxel_in_brick};
+use meshwright::vote::{Jury, VoteRule, Winding, WindingTree, vote_near_surface};
 use rayon::prelude::*;
 
 const RESOLUTION: u32 = 256;
@@ -101,7 +101,7 @@ impl Model {
         let jury = Jury { spans: &spans, operands: &self.operands, expression: &expression, rule, winding: &winding };
         let votes = vote_near_surface(&jury, &Progress::none()).expect("nobody stops it");
         let planes: Vec<Plane> = (0..self.mesh.triangles.len()).map(|t| Plane::through(self.mesh.corners(t))).collect();
-        robust(&spans, &planes, &votes, options, &Progress::none()).expect("nobody stops it")
+        robust(&spans, &planes, (&votes, &self.lattice), options, &Progress::none()).expect("nobody stops it").grid
     }
 
     fn table_2(&self, name: &str, field: &str, options: &RobustOptions) {

@@ -11,7 +11,7 @@ struct View {
 }
 
 /// A triangle in its own frame: (a, 0), (0, h) and (-b, 0) are its corners, t is the height over it.
-struct Facet {
+struct TriangleFrame {
     /// A voxel near it, and a.
     base: vec3<i32>,
     a: f32,
@@ -42,14 +42,14 @@ struct Section {
 @group(0) @binding(1) var<storage, read> listed: array<u32>;
 @group(0) @binding(2) var<storage, read> sections: array<Section>;
 @group(0) @binding(3) var<storage, read> frusta: array<Frustum>;
-@group(0) @binding(4) var<storage, read> facets: array<Facet>;
+@group(0) @binding(4) var<storage, read> frames: array<TriangleFrame>;
 
 /// No distance is farther than this.
 override band: f32;
 
 struct Corner {
     @builtin(position) position: vec4<f32>,
-    @location(0) @interpolate(flat) facet: u32,
+    @location(0) @interpolate(flat) frame: u32,
 }
 
 /// The two corners of a frustum that edge `n` joins: around either hexagon, or between them.
@@ -69,17 +69,17 @@ fn vertex(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: 
     let section = sections[listed[view.start + instance]];
     let word = section.edges[k / 4u];
     let pair = ends((word >> (8u * (k % 4u))) & 255u);
-    let facet = bitcast<u32>(frusta[section.frustum].corners[0].w);
+    let frame = bitcast<u32>(frusta[section.frustum].corners[0].w);
     let foot = frusta[section.frustum].corners[pair.x].xyz;
     let head = frusta[section.frustum].corners[pair.y].xyz;
-    let base = facets[facet].base;
+    let base = frames[frame].base;
     let height = f32(view.z - base.z);
     let rise = head.z - foot.z;
     let share = select(0.0, clamp((height - foot.z) / rise, 0.0, 1.0), rise != 0.0);
     let p = vec2<f32>(base.xy) + mix(foot.xy, head.xy, share);
     // Voxels are at the middles of pixels; rows go down.
     let place = (2.0 * p + 1.0) / view.size - 1.0;
-    return Corner(vec4(place.x, -place.y, 0.5, 1.0), facet);
+    return Corner(vec4(place.x, -place.y, 0.5, 1.0), frame);
 }
 
 struct Nearest {
@@ -89,17 +89,17 @@ struct Nearest {
 
 @fragment
 fn fragment(in: Corner) -> Nearest {
-    let f = in.facet;
+    let f = in.frame;
     let voxel = vec3(vec2<i32>(floor(in.position.xy)), view.z);
-    let relative = vec3<f32>(voxel - facets[f].base) - facets[f].origin;
-    let across = dot(facets[f].r, relative);
-    let s = dot(facets[f].s.xyz, relative);
-    let t = dot(facets[f].t.xyz, relative);
+    let relative = vec3<f32>(voxel - frames[f].base) - frames[f].origin;
+    let across = dot(frames[f].r, relative);
+    let s = dot(frames[f].s.xyz, relative);
+    let t = dot(frames[f].t.xyz, relative);
     // The half with r < 0 is mirrored.
     let left = across < 0.0;
     let r = abs(across);
-    let a = select(facets[f].a, facets[f].b, left);
-    let h = facets[f].h;
+    let a = select(frames[f].a, frames[f].b, left);
+    let h = frames[f].h;
     let square = a * a + h * h;
     let along = (a * r - h * s + h * h) / square;
     let out = (h * r + a * s - a * h) / square;
@@ -125,7 +125,7 @@ fn fragment(in: Corner) -> Nearest {
     let way = vec3(select(off.x, -off.x, left), off.y, t);
     var side = t;
     if nearest < 6u {
-        side = dot(facets[f].normals[nearest].xyz, way);
+        side = dot(frames[f].normals[nearest].xyz, way);
     }
     let distance = length(way);
     if distance > band {

@@ -17,6 +17,8 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+pub mod backend;
+
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod compare;
@@ -38,4 +40,7 @@ pub mod pipeline;
 pub mod progress;
 pub mod sdf;
 pub mod shells;
+pub mod survey;
 pub mod vote;
+
+pub use glam;

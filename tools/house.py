@@ -295,7 +295,7 @@ def is_test_or_program(path, by_path):
     owners = [path.parent / "mod.rs", path.parent.with_suffix(".rs"), path.parent / "lib.rs", path.parent.parent / "mod.rs"]
     names = {path.stem, path.parent.name}
     return any(
-        owner in by_path and re.search(rf"#\[cfg\(test\)\]\s*mod\s+(?:{'|'.join(names)})\s*;", owner.read_text())
+        owner in by_path and re.search(rf"#\[cfg\(test\)\]\s*(?:pub(?:\([^)]*\))?\s+)?mod\s+(?:{'|'.join(names)})\s*;", owner.read_text())
         for owner in owners
     )
 

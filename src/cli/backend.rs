@@ -4,7 +4,7 @@ use clap::ValueEnum;
 
 use super::exit::Failure;
 use super::words;
-use crate::pipeline::{Backend, BackendReport};
+use crate::backend::{Backend, BackendReport};
 
 /// `--backend`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

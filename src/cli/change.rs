@@ -14,8 +14,8 @@ use super::words::{self, UnitName};
 use crate::mesh::TriMesh;
 use crate::morphology::{Canal, Operation};
 use crate::pipeline::{
-    self, CanalOptions, CanalReport, HollowOptions, MorphologyOptions, Options, Outcome, Plan, Remove, SheetSide,
-    ThickenOptions,
+    self, Advice, BooleanError, CanalOptions, CanalOutcome, CanalReport, HollowOptions, MorphologyOptions, Operand,
+    Outcome, Plan, Remove, SheetSide, SurfaceOptions, ThickenOptions, VoxelSize,
 };
 
 /// A change, as asked for.
@@ -28,7 +28,7 @@ pub enum Change {
         /// The radius.
         radius: Length,
         /// How far sharp edges may reach, times the radius.
-        mitre: Option<f64>,
+        sharp: Option<f64>,
     },
     /// List canals, and fill them.
     Canals {
@@ -47,7 +47,7 @@ pub enum Change {
     /// Let thin walls and open sheets grow.
     Thicken {
         /// The least thickness.
-        least: Length,
+        min: Length,
         /// Where sheets grow.
         side: SheetSide,
     },
@@ -95,63 +95,73 @@ impl Change {
         !matches!(self, Self::Canals { remove: None, .. })
     }
 
-    /// What it would cost for `mesh`. The outer error is one of usage.
+    /// What it would cost for a solid about where `mesh` is.
     pub fn plan(
         &self,
         mesh: &TriMesh,
-        options: &Options,
+        surface: &SurfaceOptions,
         scale: &Scale,
-    ) -> Result<Result<Plan, pipeline::Error>, Failure> {
-        Ok(match self.resolved(options, scale)? {
-            Resolved::Morphology(options) => pipeline::plan_morphology(mesh, &options),
-            Resolved::Canals(options) => pipeline::plan_canals(mesh, &options),
-            Resolved::Hollow(options) => pipeline::plan_hollow(mesh, &options),
-            Resolved::Thicken(options) => pipeline::plan_thicken(mesh, &options),
-        })
+        failed: &Failed<'_>,
+    ) -> Result<Plan, Failure> {
+        match self.resolved(surface, scale)? {
+            Resolved::Morphology(options) => pipeline::plan_morphology(mesh, &options).map_err(|e| failed(&e)),
+            Resolved::Canals(options) => pipeline::plan_canals(mesh, &options).map_err(|e| failed(&e)),
+            Resolved::Hollow(options) => pipeline::plan_hollow(mesh, &options).map_err(|e| failed(&e)),
+            Resolved::Thicken(options) => pipeline::plan_thicken(mesh, &options).map_err(|e| failed(&e)),
+        }
     }
 
-    /// Makes it of `mesh`. The outer error is one of usage.
+    /// Makes it of a solid that was made of `operands`; what has no solid can only grow thicker.
+    #[allow(clippy::too_many_arguments)]
     pub fn apply(
         &self,
-        mesh: &TriMesh,
-        options: &Options,
+        made: Result<Outcome, BooleanError>,
+        operands: &[Operand<'_>],
+        surface: &SurfaceOptions,
         scale: &Scale,
+        failed: &Failed<'_>,
         session: &Session,
         report: &mut RunReport,
-    ) -> Result<Result<Changed, pipeline::Error>, Failure> {
+    ) -> Result<Changed, Failure> {
         let progress = &session.progress;
-        Ok(match self.resolved(options, scale)? {
+        let resolved = self.resolved(surface, scale)?;
+        resolved.tell(&mut report.options);
+        if let Resolved::Thicken(options) = &resolved {
+            let solid = match made {
+                Ok(outcome) => Some(outcome),
+                Err(BooleanError::Nothing(_)) => None,
+                Err(error) => return Err(failed(&error)),
+            };
+            return thickened(solid, operands, options, failed, session);
+        }
+        let outcome = made.map_err(|e| failed(&e))?;
+        let changed = match resolved {
             Resolved::Morphology(options) => {
-                report.options["radius"] = json!(options.radius);
-                report.options["mitre"] = json!(options.mitre);
-                pipeline::morphology(mesh, &options, progress).map(Changed::from)
-            }
-            Resolved::Canals(options) => {
-                report.options["max_diameter"] = json!(options.max_diameter);
-                let found = pipeline::canals(mesh, &options, progress);
-                found.map(|found| Changed { outcome: found.outcome, canal_of: found.canal_of })
+                pipeline::morphology(&outcome.solid, &options, progress).map_err(|e| failed(&e))?
             }
             Resolved::Hollow(options) => {
-                report.options["wall"] = json!(options.wall);
-                pipeline::hollow(mesh, &options, progress).map(Changed::from)
+                pipeline::hollow(&outcome.solid, &options, progress).map_err(|e| failed(&e))?
             }
-            Resolved::Thicken(options) => {
-                report.options["least"] = json!(options.least);
-                report.options["side"] = json!(options.side);
-                pipeline::thicken(mesh, &options, progress).map(Changed::from)
+            Resolved::Canals(options) => {
+                let found = pipeline::canals(&outcome.solid, &options, progress).map_err(|e| failed(&e))?;
+                return canals(outcome, found, operands, session);
             }
-        })
+            Resolved::Thicken(_) => return Err(Failure::internal("what grows thicker was made before")),
+        };
+        follow(outcome, changed, operands, session).map(Changed::from)
     }
 
     /// The options of its pipeline, with lengths in model units.
-    fn resolved(&self, options: &Options, scale: &Scale) -> Result<Resolved, Failure> {
-        let solid = options.clone();
+    fn resolved(&self, surface: &SurfaceOptions, scale: &Scale) -> Result<Resolved, Failure> {
+        // The voxel is that of the input, whatever the solid's size.
+        let voxel = scale.voxel.map_or(surface.voxel, VoxelSize::Length);
+        let surface = SurfaceOptions { voxel, ..*surface };
         Ok(match self {
-            Self::Morphology { operation, radius, mitre } => Resolved::Morphology(MorphologyOptions {
+            Self::Morphology { operation, radius, sharp } => Resolved::Morphology(MorphologyOptions {
                 operation: *operation,
                 radius: radius.resolve(scale)?,
-                mitre: *mitre,
-                solid,
+                sharp: *sharp,
+                surface,
             }),
             Self::Canals { max_diameter, remove } => {
                 let remove = match remove {
@@ -159,16 +169,83 @@ impl Change {
                     Some(RemoveChoice::All) => Remove::All,
                     Some(RemoveChoice::These(numbers)) => Remove::These(numbers.clone()),
                 };
-                Resolved::Canals(CanalOptions { max_diameter: max_diameter.resolve(scale)?, remove, solid })
+                Resolved::Canals(CanalOptions { max_diameter: max_diameter.resolve(scale)?, remove, surface })
             }
             Self::Hollow { wall, drains } => {
                 let drains = drains.iter().map(|drain| drain.resolve(scale)).collect::<Result<_, Failure>>()?;
-                Resolved::Hollow(HollowOptions { wall: wall.resolve(scale)?, drains, solid })
+                Resolved::Hollow(HollowOptions { wall: wall.resolve(scale)?, drains, surface })
             }
-            Self::Thicken { least, side } => {
-                Resolved::Thicken(ThickenOptions { least: least.resolve(scale)?, side: *side, solid })
+            Self::Thicken { min, side } => {
+                Resolved::Thicken(ThickenOptions { min: min.resolve(scale)?, side: *side, surface })
             }
         })
+    }
+}
+
+/// Makes a failure of a pipeline's error.
+type Failed<'a> = dyn Fn(&dyn Advice) -> Failure + 'a;
+
+fn follow(
+    outcome: Outcome,
+    changed: pipeline::Changed,
+    operands: &[Operand<'_>],
+    session: &Session,
+) -> Result<Outcome, Failure> {
+    Ok(outcome.followed_by(changed, operands.iter().copied(), &session.progress)?)
+}
+
+fn thickened(
+    outcome: Option<Outcome>,
+    operands: &[Operand<'_>],
+    options: &ThickenOptions,
+    failed: &Failed<'_>,
+    session: &Session,
+) -> Result<Changed, Failure> {
+    // What negative parts are taken away from has no sheets any more.
+    let nothing = TriMesh::default();
+    let surface = if let [operand] = operands { operand.mesh } else { &nothing };
+    let solid = outcome.as_ref().map(|outcome| &outcome.solid);
+    let changed = pipeline::thicken(solid, surface, options, &session.progress).map_err(|e| failed(&e))?;
+    Ok(Changed::from(match outcome {
+        Some(outcome) => follow(outcome, changed, operands, session)?,
+        None => changed.into(),
+    }))
+}
+
+fn canals(
+    outcome: Outcome,
+    found: CanalOutcome,
+    operands: &[Operand<'_>],
+    session: &Session,
+) -> Result<Changed, Failure> {
+    let (mut outcome, canal_of) = match found.filled {
+        None => (outcome, found.canal_of),
+        Some(filled) => {
+            let outcome = follow(outcome, filled, operands, session)?;
+            let canal_of = vec![0; outcome.solid.triangles.len()];
+            (outcome, canal_of)
+        }
+    };
+    outcome.report.stages.extend(found.stages);
+    outcome.report.canals = Some(found.report);
+    Ok(Changed { outcome, canal_of })
+}
+
+impl Resolved {
+    /// Writes the lengths into the options of the report.
+    fn tell(&self, report: &mut serde_json::Value) {
+        match self {
+            Self::Morphology(options) => {
+                report["radius"] = json!(options.radius);
+                report["mitre"] = json!(options.sharp);
+            }
+            Self::Canals(options) => report["max_diameter"] = json!(options.max_diameter),
+            Self::Hollow(options) => report["wall"] = json!(options.wall),
+            Self::Thicken(options) => {
+                report["least"] = json!(options.min);
+                report["side"] = json!(options.side);
+            }
+        }
     }
 }
 

@@ -1,41 +1,11 @@
 //! Values that flags choose from.
 
-use std::path::Path;
-use std::str::FromStr;
-
 use clap::ValueEnum;
 
-use crate::io::{Format, GridFormat, UnknownGridFormat};
+pub use crate::io::FileFormat as AnyFormat;
 use crate::orient::OrientMode;
 use crate::pipeline::{DistanceMethod, DistanceSign, SheetSide};
 use crate::vote::VoteRule;
-
-/// A format of meshes or of lattices, by name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AnyFormat {
-    /// Of meshes.
-    Mesh(Format),
-    /// Of lattices.
-    Grid(GridFormat),
-}
-
-impl AnyFormat {
-    /// The format that the extension of `path` names.
-    pub fn from_path(path: &Path) -> Option<Self> {
-        Format::from_path(path).map(Self::Mesh).or_else(|| GridFormat::from_path(path).map(Self::Grid))
-    }
-}
-
-impl FromStr for AnyFormat {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let grid = || text.parse().map(Self::Grid);
-        text.parse().map(Self::Mesh).or_else(|_| grid()).map_err(|_: UnknownGridFormat| {
-            format!("`{text}` is no format known here; use stl, obj, ply, off, glb, gltf or 3mf, or for lattices vti, nrrd, npy or vdb")
-        })
-    }
-}
 
 /// `--orient`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -347,12 +347,13 @@ mod tests {
                 .expect("a solid");
         });
         watched("close", &|progress| {
-            let solid = options.clone();
-            let options = MorphologyOptions { operation: Operation::Close, radius: 2.0, mitre: None, solid };
-            pipeline::morphology(&open_cube, &options, progress).expect("a solid");
+            let outcome = pipeline::repair(&open_cube, &options, progress).expect("a solid");
+            let surface = options.surface();
+            let options = MorphologyOptions { operation: Operation::Close, radius: 2.0, sharp: None, surface };
+            pipeline::morphology(&outcome.solid, &options, progress).expect("a solid");
         });
         watched("field", &|progress| {
-            let operands = [pipeline::Operand::Mesh(open_cube.clone())];
+            let operands = [pipeline::FieldOperand::Mesh((&open_cube).into())];
             let node = language::parse("offset(a, 1)", &["a"]).expect("it can be read");
             let node = node.resolve(|value, _| Ok(value)).expect("lengths are numbers");
             let built = pipeline::FieldBuilder::new(&operands, &options, progress).build(&node).expect("a field");

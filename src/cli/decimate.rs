@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::args::{CommonArgs, InputArgs, OutputArgs};
 use super::exit::{Exit, Failure};
-use super::input::{self, Input, is_soup_format};
+use super::input::{self, Input};
 use super::length::{Length, Scale};
 use super::output::Target;
 use super::report::RunReport;
@@ -18,7 +18,7 @@ use super::{machine, solid};
 use crate::compare::{CompareOptions, compare};
 use crate::decimate::{DecimateError, DecimateOptions, Decimated, decimate};
 use crate::fit::rounded;
-use crate::io::{Colours, Format, Paint, Unit};
+use crate::io::{Format, Paint, Unit};
 use crate::mesh::{Bounds, TriMesh};
 use crate::pipeline;
 
@@ -118,14 +118,8 @@ pub fn run(args: &DecimateArgs, session: &Session, report: &mut RunReport) -> Re
 /// vertices moved for these.
 fn prepare(input: &mut Input, format: Format) -> f64 {
     let loaded = &mut input.loaded;
-    if is_soup_format(loaded.format) {
-        if matches!(loaded.colours, Some(Colours::Vertices(_))) {
-            // Vertices that become one may have several colours.
-            let colours = loaded.colours.take();
-            let corners = |t: usize| colours.as_ref().map_or([[255; 4]; 3], |colours| colours.corners(&loaded.mesh, t));
-            loaded.colours = Some(Colours::Corners((0..loaded.mesh.triangles.len()).map(corners).collect()));
-        }
-        loaded.mesh = loaded.mesh.welded();
+    if loaded.format.repeats_vertices() {
+        loaded.weld();
     }
     let mut moved = 0f64;
     if format.is_single() {

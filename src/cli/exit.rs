@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::length::QuantityError;
 use super::words;
-use crate::pipeline;
+use crate::mesh::{SolidError, Validity};
+use crate::pipeline::{Advice, LimitError, Trouble};
 use crate::progress::Stopped;
 
 /// The exit status of the process.
@@ -121,37 +122,45 @@ impl Failure {
     }
 
     /// What a pipeline's error means, for operands that go by `labels`.
-    pub fn pipeline(error: &pipeline::Error, labels: &[String], unit: words::UnitName<'_>, asked: Asked) -> Self {
-        use pipeline::Error;
-        match error {
-            Error::Stopped(stopped) => Self::from(*stopped),
-            Error::Empty { operand } => {
-                let label = labels.get(*operand).map_or("the input", String::as_str);
+    pub fn pipeline(error: &impl Advice, labels: &[String], unit: words::UnitName<'_>, asked: Asked) -> Self {
+        let failure = match error.trouble() {
+            Trouble::Stopped(stopped) => return Self::from(stopped),
+            Trouble::Memory(limit) => return Self::limit(limit, unit, asked),
+            Trouble::NotSolid(what) => return Self::not_solid(&what.validity),
+            Trouble::Empty { operand } => {
+                let label = labels.get(operand).map_or("the input", String::as_str);
                 Self::input(format!("{label}: no triangle has an area"))
             }
-            Error::NothingEnclosed { reason } | Error::TooLarge { reason } => Self::input(reason.clone()),
-            Error::NoRoom { reason } => Self::new(Exit::Memory, reason.clone()),
-            Error::VoxelSize { reason } => {
-                Self::new(if asked.voxel { Exit::Usage } else { Exit::Input }, reason.clone())
-            }
-            Error::Memory { needed, allowed, voxel_that_fits } => {
-                let failure = Self::memory(*needed, *allowed, asked.memory);
-                match voxel_that_fits {
-                    Some(h) => failure.hint(format!(
-                        "--voxel {} would fit",
-                        words::with_unit(&words::rounded_up(*h), unit).replace(' ', "")
-                    )),
-                    None => failure.hint(INPUTS_ALONE),
-                }
-            }
-            Error::MissingCanal { .. } => {
-                Self::usage(error.to_string()).hint("without --remove they are listed with their numbers")
-            }
-            Error::Drain { reason } => Self::usage(reason.clone()).hint("another point for it, or a thinner wall"),
-            Error::Filter(error) => Self::usage(error.to_string()),
-            Error::Gpu { reason, hint } => Self::new(Exit::Internal, reason.clone()).hint(hint.clone()),
-            Error::MissingOperand { .. } => Self::internal(error.to_string()),
+            Trouble::Options => Self::usage(error.to_string()),
+            Trouble::Voxel => Self::new(if asked.voxel { Exit::Usage } else { Exit::Input }, error.to_string()),
+            Trouble::Input => Self::input(error.to_string()),
+            Trouble::NoRoom => Self::new(Exit::Memory, error.to_string()),
+            Trouble::Device | Trouble::Call => Self::internal(error.to_string()),
+        };
+        match error.hint() {
+            Some(hint) => failure.hint(hint),
+            None => failure,
         }
+    }
+
+    /// More memory needed than allowed, and a voxel that would fit.
+    fn limit(limit: &LimitError, unit: words::UnitName<'_>, asked: Asked) -> Self {
+        let LimitError::Memory { needed, allowed, voxel_that_fits } = limit else {
+            return Self::input(limit.to_string());
+        };
+        let failure = Self::memory(*needed, *allowed, asked.memory);
+        match voxel_that_fits {
+            Some(h) => failure
+                .hint(format!("--voxel {} would fit", words::with_unit(&words::rounded_up(*h), unit).replace(' ', ""))),
+            None => failure.hint(INPUTS_ALONE),
+        }
+    }
+
+    /// A result that does not keep the promise.
+    pub fn not_solid(validity: &Validity) -> Self {
+        let problems = validity.problems().join("; ");
+        Self::new(Exit::Limit, format!("the result is not a valid solid ({problems}); it was not written"))
+            .hint("another --resolution or --voxel; and please report it: this should not happen")
     }
 }
 
@@ -163,6 +172,15 @@ impl From<Stopped> for Failure {
                 Self::new(Exit::Deadline, "the time given with --timeout has passed; no output was written")
                     .hint("a larger --timeout, or a lower --resolution")
             }
+        }
+    }
+}
+
+impl From<SolidError> for Failure {
+    fn from(error: SolidError) -> Self {
+        match error {
+            SolidError::Stopped(stopped) => Self::from(stopped),
+            SolidError::NotSolid(what) => Self::not_solid(&what.validity),
         }
     }
 }

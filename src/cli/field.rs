@@ -25,7 +25,10 @@ use crate::fit::FitOptions;
 use crate::io::{Colours, GridFormat, GridValues, Paint, Unit, WriteOptions};
 use crate::mesh::Bounds;
 use crate::picture::ramp_colour;
-use crate::pipeline::{self, Built, FieldBand, FieldBuilder, FieldReport, Operand, Options, Precision, VoxelSize};
+use crate::pipeline::{
+    self, Built, FieldBand, FieldBuilder, FieldError, FieldOperand, FieldReport, LimitError, Operand, Options, Outcome,
+    Precision, VoxelSize,
+};
 
 /// Values in a lattice reach so far from the surface, voxels, unless it is said otherwise.
 const USUAL_BAND: f64 = 4.0;
@@ -53,9 +56,10 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
         }
         Ok::<(), Failure>(())
     })?;
-    let operands = operands(&mut given, args.max_memory)?;
-    let held: u64 = operands.iter().map(Operand::memory).sum();
-    let bounds = operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
+    let lattices = lattices(&mut given, args.max_memory)?;
+    let operands = operands(&given, &lattices);
+    let held: u64 = operands.iter().map(FieldOperand::memory).sum();
+    let bounds = operands.iter().filter_map(FieldOperand::bounds).reduce(|a, b| a.union(&b));
     let scale = scale(args, unit, bounds.as_ref())?;
     let options = options(args, &scale, &given, held)?;
     report.options = resolved(args, unit, &options, &scale);
@@ -81,29 +85,33 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
 }
 
-/// The operands of the expression, in one unit. The values of the files go over to the operands.
-fn operands(given: &mut Given, max_memory: Option<u64>) -> Result<Vec<Operand>, Failure> {
-    let mut operands = Vec::new();
+/// The lattices of the expression, in one unit, by the numbers of the grids: the values of the files go over to them.
+fn lattices(given: &mut Given, max_memory: Option<u64>) -> Result<Vec<Arc<Sampled>>, Failure> {
+    let mut lattices: Vec<Arc<Sampled>> = Vec::new();
     let mut held = 0;
-    for which in given.order.clone() {
-        let operand = match which {
-            Which::Mesh(n) => Operand::Mesh(given.meshes[n].loaded.mesh.clone()),
-            Which::Grid(n) => {
-                let needed = held + given.held() + Sampled::memory_of_file(&given.grids[n].file);
-                if let Some(cap) = max_memory.filter(|&cap| needed > cap) {
-                    return Err(Failure::memory(needed, cap, max_memory)
-                        .hint("for the lattices that are read; a larger --max-memory"));
-                }
-                let grid = &mut given.grids[n];
-                let sampled = Sampled::of_file(&grid.file, grid.factor);
-                grid.file.values = GridValues::Dense(Vec::new());
-                Operand::Grid(Arc::new(sampled))
-            }
-        };
-        held += operand.memory();
-        operands.push(operand);
+    for n in 0..given.grids.len() {
+        let needed = held + given.held() + Sampled::memory_of_file(&given.grids[n].file);
+        if let Some(cap) = max_memory.filter(|&cap| needed > cap) {
+            return Err(
+                Failure::memory(needed, cap, max_memory).hint("for the lattices that are read; a larger --max-memory")
+            );
+        }
+        let grid = &mut given.grids[n];
+        let sampled = Sampled::of_file(&grid.file, grid.factor);
+        grid.file.values = GridValues::Dense(Vec::new());
+        held += sampled.memory();
+        lattices.push(Arc::new(sampled));
     }
-    Ok(operands)
+    Ok(lattices)
+}
+
+/// The operands of the expression, in the order given.
+fn operands<'a>(given: &'a Given, lattices: &[Arc<Sampled>]) -> Vec<FieldOperand<'a>> {
+    let operand = |which: &Which| match *which {
+        Which::Mesh(n) => FieldOperand::Mesh((&given.meshes[n].loaded).into()),
+        Which::Grid(n) => FieldOperand::Grid(lattices[n].clone()),
+    };
+    given.order.iter().map(operand).collect()
 }
 
 /// The expressions, parsed.
@@ -247,9 +255,6 @@ fn options(args: &FieldArgs, scale: &Scale, given: &Given, held: u64) -> Result<
     let tolerance = if keeps_all { 0.0 } else { usual.tolerance };
     Ok(Options {
         fit: (!args.no_fit).then_some(FitOptions { tolerance, ..usual }),
-        classes: (given.painted().zip(given.textured()))
-            .map(|((mesh, colours), (_, texture))| pipeline::classes_of(mesh, colours, texture))
-            .collect(),
         orient: args.orient.into(),
         collapse: !args.no_collapse,
         // What the lattices and textures of the files take is taken already.
@@ -314,10 +319,12 @@ impl Run<'_> {
         self.builder.build(&node).map_err(|e| self.failure(&e))
     }
 
-    fn failure(&self, error: &pipeline::Error) -> Failure {
+    fn failure(&self, error: &FieldError) -> Failure {
         let labels = self.given.labels();
         let unit = self.scale.unit.map(|unit| unit.to_string());
-        if let (pipeline::Error::Memory { needed, .. }, Some(cap), 1..) = (error, self.args.max_memory, self.held) {
+        if let (FieldError::Limit(LimitError::Memory { needed, .. }), Some(cap), 1..) =
+            (error, self.args.max_memory, self.held)
+        {
             let lattices = words::bytes(self.held);
             let hint = format!("a larger voxel; the lattices that were read take {lattices} of it");
             return Failure::memory(needed.saturating_add(self.held), cap, self.args.max_memory).hint(hint);
@@ -335,34 +342,39 @@ impl Run<'_> {
         if let Some(volume) = self.args.drop_smaller {
             let scale = Scale { voxel: Some(outcome.lattice.h), ..*self.scale };
             let least = volume.resolve(&scale)?;
-            (outcome, _) = pipeline::drop_smaller(outcome, &[], least).map_err(|e| self.failure(&e))?;
+            (outcome, _) = self.dropped(outcome, least)?;
             account.smaller = outcome.report.smaller;
         }
         report.options["voxel"] = json!(outcome.lattice.h);
         report.stages.extend(outcome.report.stages.iter().cloned());
         report.fields.push(account);
+        let operands = self.given.operands();
         let paint = match &self.texts.paint {
             Some(text) => {
                 let built = self.build(text, share)?;
-                let values = pipeline::field_values(&built.field, &outcome.mesh.positions);
+                let values = pipeline::field_values(&built.field, &outcome.solid.positions);
                 Some(painted(&values, self.args.paint_range, report))
             }
-            None => {
-                let operands: Vec<_> = self.given.painted().collect();
-                pipeline::carry_colours(&outcome, &operands)
-            }
+            None => pipeline::carry_colours(&outcome.solid, &outcome.sources, &operands),
         };
         let target =
             Target { path: target.path.clone(), options: WriteOptions { unit: self.scale.unit, ..target.options } };
-        let operands: Vec<_> = self.given.textured().collect();
-        let texture = self.texts.paint.is_none().then(|| pipeline::carry_texture(&outcome, &operands)).flatten();
+        let carried = || pipeline::carry_texture(&outcome.solid, &outcome.sources, &operands);
+        let texture = self.texts.paint.is_none().then(carried).flatten();
         let paint = Paint { colours: paint.as_ref(), texture: texture.as_ref(), beside: None };
-        solid::write(&outcome.mesh, paint, &target, self.session, report)
+        solid::write(&outcome.solid, paint, &target, self.session, report)
+    }
+
+    fn dropped(&self, outcome: Outcome, least: f64) -> Result<(Outcome, Vec<usize>), Failure> {
+        let none: [Operand<'_>; 0] = [];
+        let asked = Asked { voxel: self.args.voxel.is_some(), memory: self.args.max_memory };
+        pipeline::drop_smaller(outcome, none, least, &self.session.progress)
+            .map_err(|e| Failure::pipeline(&e, &self.given.labels(), None, asked))
     }
 
     /// The options with `--simplify` in voxels of the lattice that the surface will be made on.
     fn simplified(&self, built: &Built) -> Result<Options, Failure> {
-        let mut options = self.options.clone();
+        let mut options = *self.options;
         if let (Some(Simplify::Within(length)), Some(fit)) = (self.args.simplify, &mut options.fit) {
             let h = pipeline::field_spacing(built, self.options).map_err(|e| self.failure(&e))?;
             fit.tolerance = length.resolve(&Scale { voxel: Some(h), ..*self.scale })? / h;

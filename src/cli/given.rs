@@ -9,8 +9,9 @@ use super::negative;
 use super::report::RunReport;
 use super::session::Session;
 use super::slice::{self, GridInput};
-use crate::io::{Colours, Format, GridFormat, TextureMap, Unit};
+use crate::io::{Format, GridFormat, Unit};
 use crate::mesh::TriMesh;
+use crate::pipeline::Operand;
 
 /// Files as read.
 pub struct Given {
@@ -102,21 +103,14 @@ impl Given {
         }));
     }
 
-    /// Each input's mesh and colours; a grid has neither.
-    pub fn painted(&self) -> impl Iterator<Item = (&TriMesh, Option<&Colours>)> {
+    /// Each input's mesh and what it looks like; a grid has neither.
+    pub fn operands(&self) -> Vec<Operand<'_>> {
         const NOTHING: &TriMesh = &TriMesh { positions: Vec::new(), triangles: Vec::new() };
-        self.order.iter().map(|which| match *which {
-            Which::Mesh(n) => (&self.meshes[n].loaded.mesh, self.meshes[n].loaded.colours.as_ref()),
-            Which::Grid(_) => (NOTHING, None),
-        })
-    }
-
-    /// Each input's mesh and textures; a grid has neither.
-    pub fn textured(&self) -> impl Iterator<Item = (&TriMesh, Option<&TextureMap>)> {
-        self.order.iter().zip(self.painted()).map(|(which, (mesh, _))| match *which {
-            Which::Mesh(n) => (mesh, self.meshes[n].loaded.texture.as_ref()),
-            Which::Grid(_) => (mesh, None),
-        })
+        let operand = |which: &Which| match *which {
+            Which::Mesh(n) => (&self.meshes[n].loaded).into(),
+            Which::Grid(_) => NOTHING.into(),
+        };
+        self.order.iter().map(operand).collect()
     }
 
     /// What the inputs are called.

@@ -11,9 +11,8 @@ use super::negative;
 use super::report::{InputEntry, PartEntry};
 use super::session::Session;
 use super::words;
-use crate::io::{self, Format, Loaded, Part, TextureMap, Unit};
-use crate::mesh::{ValidateOptions, Validity, validate};
-use crate::pipeline;
+use crate::io::{self, Loaded, Part, TextureMap, Unit};
+use crate::mesh::{Validity, validate};
 
 /// One mesh as read.
 pub struct Input {
@@ -23,14 +22,6 @@ pub struct Input {
     pub loaded: Loaded,
     /// Its entry in the report; the validity is filled in later.
     pub entry: InputEntry,
-}
-
-impl Input {
-    /// A number for each triangle, different where colours, materials and textures are to be kept apart.
-    pub fn classes(&self) -> Vec<u32> {
-        let Loaded { mesh, colours, texture, .. } = &self.loaded;
-        pipeline::classes_of(mesh, colours.as_ref(), texture.as_ref())
-    }
 }
 
 /// Bytes of memory that the textures of all inputs take.
@@ -107,14 +98,8 @@ pub fn mesh_of(
     let label = label(path);
     let stream = is_stream(path);
     let name = (!stream).then_some(path);
-    let mut loaded = io::read_bytes(bytes, args.in_format, name).map_err(|e| unreadable(&label, stream, args, &e))?;
-    if loaded.mesh.triangles.is_empty() {
-        return Err(Failure::input(format!("{label}: the file has no triangles")));
-    }
+    let loaded = io::read_bytes(bytes, args.in_format, name).map_err(|e| unreadable(&label, stream, args, &e))?;
     session.progress.check()?;
-    let misnamed = name.and_then(Format::from_path).filter(|named| args.in_format.is_none() && *named != loaded.format);
-    let misnamed = misnamed.map(|named| format!("named as {named}, and read as {}, which it is", loaded.format));
-    loaded.warnings.extend(misnamed);
     notes.extend(loaded.warnings.iter().map(|warning| format!("{label}: {warning}")));
     let entries = |parts: &[Part]| -> Vec<PartEntry> {
         parts.iter().map(|part| PartEntry { name: part.name.clone(), triangles: part.triangles.len() }).collect()
@@ -140,14 +125,17 @@ fn read_stream() -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn unreadable(label: &str, stream: bool, args: &InputArgs, error: &io::ReadError) -> Failure {
+fn unreadable(label: &str, stream: bool, args: &InputArgs, error: &io::FileError) -> Failure {
     let text = error.to_string();
     let message = if text.contains(label) { text } else { format!("{label}: {text}") };
     let failure = Failure::input(message);
     match args.in_format {
         None if stream => failure.hint("--in-format says what standard input holds, for example --in-format stl"),
         Some(format) => failure.hint(format!("it was read as {format}, as --in-format says")),
-        None => failure,
+        None => match error.hint() {
+            Some(hint) => failure.hint(hint),
+            None => failure,
+        },
     }
 }
 
@@ -167,16 +155,9 @@ pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Whether the triangles of a format share no vertices by themselves, so that equal positions
-/// mean the same vertex: STL has no indices, and glTF splits vertices where normals differ.
-pub fn is_soup_format(format: Format) -> bool {
-    matches!(format, Format::Stl | Format::Glb | Format::Gltf)
-}
-
 /// The state of a mesh as its file holds it.
 pub fn examine(loaded: &Loaded, session: &Session) -> Result<Validity, Failure> {
-    let options = ValidateOptions { self_intersections: true, weld: is_soup_format(loaded.format) };
-    Ok(validate(&loaded.mesh, &options, &session.progress)?)
+    Ok(validate(&loaded.mesh, &loaded.validate_options(), &session.progress)?)
 }
 
 /// Brings all inputs to one unit and says which. Files that carry none are taken to be in
@@ -206,14 +187,9 @@ pub fn bring_to(unit: Unit, inputs: &mut [Input], args: &InputArgs, notes: &mut 
             }
         };
         if own != unit {
-            let factor = own.metres() / unit.metres();
-            let negative = input.loaded.negative.iter_mut().map(|negative| &mut negative.mesh);
-            for p in std::iter::once(&mut input.loaded.mesh).chain(negative).flat_map(|mesh| &mut mesh.positions) {
-                *p *= factor;
-            }
             notes.push(rescaled(&input.label, own, unit));
         }
-        input.loaded.unit = Some(unit);
+        input.loaded.rescale(own, unit);
     }
 }
 

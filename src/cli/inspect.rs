@@ -142,7 +142,7 @@ fn thickness_rows(found: &ThicknessReport, unit: words::UnitName<'_>) -> Vec<sum
 
 /// For formats with shared vertices: how many open edges only come from vertices stored apart.
 fn closable(input: &Input, validity: &Validity, session: &Session) -> Result<Option<String>, Failure> {
-    if validity.open_edges == 0 || input::is_soup_format(input.loaded.format) {
+    if validity.open_edges == 0 || input.loaded.format.repeats_vertices() {
         return Ok(None);
     }
     let options = ValidateOptions { self_intersections: false, weld: true };

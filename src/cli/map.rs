@@ -6,8 +6,7 @@ use super::exit::Failure;
 use super::output;
 use super::session::Session;
 use crate::io::{self, FaceMap, LegendEntry};
-use crate::mesh::TriMesh;
-use crate::pipeline::{Outcome, TriangleKind, kinds};
+use crate::pipeline::{Operand, Outcome, TriangleKind, kinds};
 
 /// The colours of the kinds, in their order: blue-grey, orange, magenta. Eyes that lack a kind of cones tell them apart, too (see the tests).
 const KINDS: [[u8; 3]; 3] = [[176, 190, 205], [230, 150, 20], [165, 15, 105]];
@@ -30,11 +29,11 @@ fn meaning(kind: TriangleKind) -> String {
 pub fn write(
     path: &Path,
     outcome: &Outcome,
-    operands: &[TriMesh],
+    operands: &[Operand<'_>],
     canal_of: &[u32],
     session: &Session,
 ) -> Result<(), Failure> {
-    let kinds = kinds(outcome, operands);
+    let kinds = kinds(outcome, operands.iter().copied());
     session.progress.check()?;
     let numbers: Vec<u32> = kinds.iter().map(|&kind| kind as u32).collect();
     let canal = |t: usize| canal_of.get(t).copied().filter(|&canal| canal > 0);
@@ -53,7 +52,7 @@ pub fn write(
     let comments = [format!("kind of a face: {}", words.join(", "))];
     let map = FaceMap { colours: &colours, numbers: &properties, legend: &legend(most), comments: &comments };
     let mut bytes = Vec::new();
-    io::encode_face_map(&outcome.mesh, &map, &mut bytes).map_err(|error| output::unencoded(path, &error))?;
+    io::encode_face_map(&outcome.solid, &map, &mut bytes).map_err(|error| output::unencoded(path, &error))?;
     output::write_side(path, &bytes, session)
 }
 

@@ -21,11 +21,11 @@ pub fn grow(args: &GrowArgs, operation: Operation, session: &Session, report: &m
 pub fn run(
     args: &MorphologyArgs,
     operation: Operation,
-    mitre: Option<f64>,
+    sharp: Option<f64>,
     session: &Session,
     report: &mut RunReport,
 ) -> Result<Exit, Failure> {
-    let change = Change::Morphology { operation, radius: args.radius, mitre };
+    let change = Change::Morphology { operation, radius: args.radius, sharp };
     changed(&args.input, &change, &args.solid, session, report)
 }
 
@@ -40,7 +40,7 @@ pub fn canals(args: &CanalArgs, session: &Session, report: &mut RunReport) -> Re
 
 /// Lets the thin walls of one file grow.
 pub fn thicken(args: &ThickenArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
-    let change = Change::Thicken { least: args.min, side: args.side.into() };
+    let change = Change::Thicken { min: args.min, side: args.side.into() };
     changed(&args.input, &change, &args.solid, session, report)
 }
 

@@ -1,13 +1,10 @@
 //! Negative parts of a file, which slicers take away from the rest: an operand of their own where solids are combined.
 
-use super::exit::Failure;
 use super::input::Input;
 use super::report::PartEntry;
-use super::session::Session;
 use super::words;
 use crate::io::Loaded;
 use crate::ldi::Expression;
-use crate::pipeline::{self, Options};
 
 /// Makes an operand of the negative parts of each input, after all others, and takes it away from its own in the
 /// expression.
@@ -40,58 +37,7 @@ pub fn as_operands(inputs: &mut Vec<Input>, expression: &Expression) -> Expressi
         };
         inputs.push(Input { label, loaded, entry });
     }
-    without(expression, &negative_of)
-}
-
-/// The expression with each operand less its negative parts.
-fn without(expression: &Expression, negative_of: &[Option<usize>]) -> Expression {
-    let one = |part: &Expression| Box::new(without(part, negative_of));
-    let all = |parts: &[Expression]| parts.iter().map(|part| without(part, negative_of)).collect();
-    match expression {
-        Expression::Operand(n) => match negative_of.get(*n).copied().flatten() {
-            Some(negative) => {
-                Expression::Difference(Box::new(Expression::Operand(*n)), Box::new(Expression::Operand(negative)))
-            }
-            None => Expression::Operand(*n),
-        },
-        Expression::Union(parts) => Expression::Union(all(parts)),
-        Expression::Intersection(parts) => Expression::Intersection(all(parts)),
-        Expression::Difference(a, b) => Expression::Difference(one(a), one(b)),
-        Expression::SymmetricDifference(a, b) => Expression::SymmetricDifference(one(a), one(b)),
-    }
-}
-
-/// For a change of a single solid: what is left of it without its negative parts, and the options for that.
-pub fn carved(
-    inputs: &[Input],
-    expression: &Expression,
-    options: &Options,
-    session: &Session,
-) -> Result<Result<(Input, Options), pipeline::Error>, Failure> {
-    let Some(own) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
-    let meshes: Vec<_> = inputs.iter().map(|input| input.loaded.mesh.clone()).collect();
-    let outcome = match pipeline::boolean(&meshes, expression, options, &session.progress) {
-        Ok(outcome) => outcome,
-        Err(error) => return Ok(Err(error)),
-    };
-    let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
-    let colours = pipeline::carry_colours(&outcome, &operands);
-    let textures: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.texture.as_ref())).collect();
-    let texture = pipeline::carry_texture(&outcome, &textures);
-    let classes = pipeline::classes_of(&outcome.mesh, colours.as_ref(), texture.as_ref());
-    let options = Options { classes: vec![classes], ..options.clone() };
-    let loaded = Loaded {
-        mesh: outcome.mesh,
-        colours,
-        texture,
-        legend: Vec::new(),
-        format: own.loaded.format,
-        unit: own.loaded.unit,
-        parts: own.loaded.parts.clone(),
-        negative: None,
-        warnings: Vec::new(),
-    };
-    Ok(Ok((Input { label: own.label.clone(), loaded, entry: own.entry.clone() }, options)))
+    expression.less(&negative_of)
 }
 
 /// For what has nothing to subtract from: forgets the negative parts, and says which.
@@ -111,21 +57,4 @@ fn named(parts: &[PartEntry]) -> String {
         parts.iter().filter(|part| !part.name.is_empty()).map(|part| format!("`{}`", part.name)).collect();
     let names = if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
     format!("{}{names}", words::plural(parts.len(), "negative part"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_use_of_an_operand_is_less_its_negative_parts() {
-        let expression = Expression::difference(3);
-        let whole = without(&expression, &[Some(3), None, Some(4)]);
-        for bits in 0..32u32 {
-            let inside: Vec<bool> = (0..5).map(|n| bits >> n & 1 == 1).collect();
-            let expected = (inside[0] && !inside[3]) && !(inside[1] || (inside[2] && !inside[4]));
-            assert_eq!(whole.evaluate(&inside), expected, "{inside:?}");
-        }
-        assert_eq!(without(&expression, &[None; 3]), expression);
-    }
 }

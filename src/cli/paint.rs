@@ -1,7 +1,6 @@
 //! Colours and textures of what is written: what the format loses of them, the order that it needs, and the files beside it.
 
 use std::borrow::Cow;
-use std::path::Path;
 
 use super::exit::Failure;
 use super::output::{self, Target};
@@ -51,31 +50,7 @@ impl<'a> Arranged<'a> {
 
 /// What becomes of colours and textures that the format has no place for.
 pub fn lost(mesh: &TriMesh, paint: &Paint<'_>, target: &Target) -> Vec<String> {
-    let format = target.options.format;
-    let mut lost: Vec<String> =
-        paint.colours.and_then(|colours| lost_colours(colours, mesh, format)).into_iter().collect();
-    if let Some(texture) = paint.texture {
-        lost.extend(texture.lost_in(format, !output::is_direct(&target.path)));
-        if paint.colours.is_some() && covers_colours(texture, format) {
-            lost.push(
-                "3mf has either a colour or a texture for a triangle; colours of textured ones are left out".into(),
-            );
-        }
-    }
-    lost
-}
-
-fn lost_colours(colours: &Colours, mesh: &TriMesh, format: Format) -> Option<String> {
-    match colours.carried_by(format, mesh) {
-        Carried::Wholly => None,
-        Carried::Roughly => Some(format!("{format} has no place for colours of this kind; they were averaged")),
-        Carried::Not => Some(format!("{format} holds no colours; they are left out")),
-    }
-}
-
-/// Whether textures take the place of colours in a file of this format.
-fn covers_colours(texture: &TextureMap, format: Format) -> bool {
-    format == Format::ThreeMf && (0..texture.coordinates.len()).any(|t| texture.image(t).is_some())
+    paint.lost_in(target.options.format, mesh, !output::is_direct(&target.path))
 }
 
 /// Whether the file as read back has the colours, as far as its format holds them.
@@ -85,7 +60,7 @@ pub fn check_colours(read: &Loaded, mesh: &TriMesh, paint: &Paint<'_>) -> Result
         |found: &Colours| (0..mesh.triangles.len()).all(|t| colours.corners(mesh, t) == found.corners(&read.mesh, t));
     // Beside a texture a reader takes white for nothing.
     let white = || (0..mesh.triangles.len()).all(|t| colours.corners(mesh, t) == [[255; 4]; 3]);
-    let covered = paint.texture.is_some_and(|texture| covers_colours(texture, read.format));
+    let covered = paint.texture_covers_colours(read.format);
     let found = |read: &Loaded| match &read.colours {
         Some(found) => same(found),
         None => read.texture.is_some() && white(),
@@ -120,30 +95,14 @@ pub fn write_beside(target: &Target, texture: &TextureMap, session: &Session) ->
             let message = format!("{name} belongs to the textures of the output, and is another file of this run, too");
             return Err(Failure::usage(message).hint("another name for one of them"));
         }
-        if holds(&path, &file.bytes) {
+        if file.is_at(&path) {
             continue;
         }
-        if !session.kept.force && is_of_input(texture, &path)? {
+        if !session.kept.force && texture.was_read_from(&path).map_err(|error| output::unwritable(&path, &error))? {
             let message = format!("{} belongs to the textures of an input and would be overwritten", path.display());
             return Err(Failure::usage(message).hint("another name after -o, or --force"));
         }
         output::write_side(&path, &file.bytes, session)?;
     }
     Ok(())
-}
-
-/// Whether the file is there with these bytes already.
-fn holds(path: &Path, bytes: &[u8]) -> bool {
-    let same_length = path.metadata().is_ok_and(|found| found.is_file() && found.len() == bytes.len() as u64);
-    same_length && std::fs::read(path).is_ok_and(|found| found == bytes)
-}
-
-/// Whether an input's textures were read from this file.
-fn is_of_input(texture: &TextureMap, path: &Path) -> Result<bool, Failure> {
-    let place = match path.canonicalize() {
-        Ok(place) => place,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(false),
-        Err(error) => return Err(output::unwritable(path, &error)),
-    };
-    Ok(texture.files.iter().any(|file| file.canonicalize().is_ok_and(|file| file == place)))
 }

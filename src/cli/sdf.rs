@@ -20,7 +20,8 @@ use crate::io::{DistanceSamples, GridFormat, SampleBlocks, Unit};
 use crate::lattice::Slot;
 use crate::mesh::Validity;
 use crate::pipeline::{
-    self, DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign, VoxelSize,
+    self, DistanceError, DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign,
+    LimitError, VoxelSize,
 };
 
 /// Makes the field of one file.
@@ -183,7 +184,7 @@ fn smaller(input: &Input, options: &DistanceOptions, allowed: u64) -> &'static s
 }
 
 fn failure(
-    error: &pipeline::Error,
+    error: &DistanceError,
     input: &Input,
     options: &DistanceOptions,
     unit: Option<Unit>,
@@ -191,7 +192,7 @@ fn failure(
 ) -> Failure {
     let unit = unit.map(|unit| unit.to_string());
     match error {
-        pipeline::Error::Memory { needed, allowed, .. } => {
+        DistanceError::Limit(LimitError::Memory { needed, allowed, .. }) => {
             Failure::memory(*needed, *allowed, args.max_memory).hint(smaller(input, options, *allowed))
         }
         _ => {
@@ -251,7 +252,7 @@ fn samples<'a>(
     plane: &'a (dyn Fn(usize, &mut Vec<f32>) + Sync),
     blocks: &'a SampleBlocks<'a>,
 ) -> DistanceSamples<'a> {
-    let lattice = &outcome.lattice;
+    let lattice = &outcome.field.lattice;
     DistanceSamples {
         origin: lattice.origin,
         spacing: lattice.h,
@@ -273,10 +274,10 @@ pub(super) fn write(
     report: &mut RunReport,
 ) -> Result<OutputEntry, Failure> {
     let plane = |z: usize, values: &mut Vec<f32>| outcome.plane(z, values);
-    let (bricks, h) = (&outcome.field.bricks, outcome.lattice.h);
+    let (field, bricks) = (&outcome.field, &outcome.field.grid.bricks);
     let blocks = SampleBlocks {
         stored: bricks.active(),
-        values: &|n| outcome.field.values[n].map(|value| (f64::from(value) * h) as f32),
+        values: &|n| field.grid.values[n].map(|value| field.length(value) as f32),
         inside: &|brick| bricks.slot(brick) == Slot::Inside,
     };
     let samples = samples(outcome, unit, &plane, &blocks);

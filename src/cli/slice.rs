@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
-use glam::{DVec3, IVec3};
+use glam::DVec3;
 use serde::Serialize;
 
 use super::exit::Failure;
@@ -13,7 +13,7 @@ use super::length::QuantityError;
 use super::report::InputEntry;
 use super::session::Session;
 use super::words::{self, UnitName};
-use crate::io::{GridFile, GridReadProblem, Unit, read_grid_within};
+use crate::io::{FileProblem, GridFile, Unit, read_grid_within};
 use crate::mesh::Bounds;
 use crate::picture::{Axis, Image, RenderError, SliceColours, SlicePlane, SliceSamples, sample_slice};
 use crate::sdf::exact::{ExactDistance, PointSign};
@@ -26,12 +26,12 @@ const MARGIN: f64 = 0.15;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SliceChoice {
     axis: Axis,
-    at: Place,
+    at: Location,
 }
 
 /// Where on the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Place {
+enum Location {
     /// A share of the extent, percent.
     Percent(f64),
     /// In model units.
@@ -42,7 +42,7 @@ enum Place {
 
 impl Default for SliceChoice {
     fn default() -> Self {
-        Self { axis: Axis::Z, at: Place::Percent(50.0) }
+        Self { axis: Axis::Z, at: Location::Percent(50.0) }
     }
 }
 
@@ -62,9 +62,9 @@ impl FromStr for SliceChoice {
         let suffix = &at.trim()[number.len()..];
         let value: f64 = number.trim_end().parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(wrong)?;
         let at = match suffix {
-            "" => Place::Plain(value),
-            "%" => Place::Percent(value),
-            unit => Place::Unit(value, unit.parse().map_err(|_| wrong())?),
+            "" => Location::Plain(value),
+            "%" => Location::Percent(value),
+            unit => Location::Unit(value, unit.parse().map_err(|_| wrong())?),
         };
         Ok(Self { axis, at })
     }
@@ -74,9 +74,9 @@ impl fmt::Display for SliceChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let axis = axis_name(self.axis);
         match self.at {
-            Place::Percent(value) => write!(f, "{axis}={value}%"),
-            Place::Plain(value) => write!(f, "{axis}={value}"),
-            Place::Unit(value, unit) => write!(f, "{axis}={value}{unit}"),
+            Location::Percent(value) => write!(f, "{axis}={value}%"),
+            Location::Plain(value) => write!(f, "{axis}={value}"),
+            Location::Unit(value, unit) => write!(f, "{axis}={value}{unit}"),
         }
     }
 }
@@ -91,9 +91,9 @@ impl SliceChoice {
         let k = self.axis.number();
         let [low, high] = [bounds.min[k], bounds.max[k]];
         let at = match self.at {
-            Place::Percent(share) => low + (high - low) * share / 100.0,
-            Place::Plain(value) => value,
-            Place::Unit(value, own) => {
+            Location::Percent(share) => low + (high - low) * share / 100.0,
+            Location::Plain(value) => value,
+            Location::Unit(value, own) => {
                 let model = unit.ok_or_else(|| QuantityError::UnitUnknown { length: format!("{value}{own}") })?;
                 value * (own.metres() / model.metres())
             }
@@ -130,11 +130,14 @@ pub fn grid_of(
 ) -> Result<GridInput, Failure> {
     let name = (!input::is_stream(path)).then_some(path);
     let file = read_grid_within(bytes, None, name, max_memory).map_err(|error| match *error.problem {
-        GridReadProblem::Memory { needed, allowed } => {
+        FileProblem::Memory { needed, allowed } => {
             let hint = format!("for {} alone; a larger --max-memory, or a coarser lattice", input::label(path));
             Failure::memory(needed, allowed, max_memory).hint(hint)
         }
-        _ => Failure::input(error.to_string()),
+        _ => match error.hint() {
+            Some(hint) => Failure::input(error.to_string()).hint(hint),
+            None => Failure::input(error.to_string()),
+        },
     })?;
     let label = input::label(path);
     notes.extend(file.warnings.iter().map(|warning| format!("{label}: {warning}")));
@@ -166,9 +169,14 @@ impl<'a> Field<'a> {
     /// The values of a grid, linear between voxels and nothing beyond.
     pub fn of_grid(grid: &'a GridInput) -> Self {
         let (file, factor) = (&grid.file, grid.factor);
+        let lattice = file.lattice();
         let extent = DVec3::from(file.dims.map(|count| (count - 1) as f64)) * file.spacing;
         let bounds = Bounds { min: file.origin * factor, max: (file.origin + extent) * factor };
-        let value = Box::new(move |p| interpolated(file, p / factor).map_or(f64::NAN, |value| value * factor));
+        let at_voxel = |voxel| file.at(voxel).map_or(f64::NAN, f64::from);
+        let value = Box::new(move |p: DVec3| {
+            let place = lattice.to_lattice(p / factor);
+            if lattice.holds(place) { lattice.interpolate(place, at_voxel).value * factor } else { f64::NAN }
+        });
         Self { label: &grid.entry.path, unit: file.unit, bounds, value }
     }
 
@@ -187,25 +195,6 @@ impl<'a> Field<'a> {
         let value = Box::new(move |p| exact.at(p).map_or(f64::NAN, |nearest| nearest.signed));
         Ok(Self { label: &input.label, unit: input.loaded.unit, bounds, value })
     }
-}
-
-/// Linear between the eight voxels around `p`; `None` outside the lattice.
-fn interpolated(file: &GridFile, p: DVec3) -> Option<f64> {
-    // The last voxel belongs to the lattice, and rounding must not take it away.
-    const ROUNDING: f64 = 1e-9;
-    let last = DVec3::from(file.dims.map(|count| (count - 1) as f64));
-    let at = (p - file.origin) / file.spacing;
-    if !(at.cmpge(-last * ROUNDING - ROUNDING).all() && at.cmple(last * (1.0 + ROUNDING) + ROUNDING).all()) {
-        return None;
-    }
-    let at = at.clamp(DVec3::ZERO, last);
-    let first = at.floor().min((last - 1.0).max(DVec3::ZERO));
-    let (t, voxel) = (at - first, first.as_ivec3());
-    let far = last.min(DVec3::ONE).as_ivec3();
-    let value = |x: i32, y: i32, z: i32| file.at(voxel + IVec3::new(x, y, z) * far).map(f64::from);
-    let along_x = |y: i32, z: i32| Some(value(0, y, z)? * (1.0 - t.x) + value(1, y, z)? * t.x);
-    let along_y = |z: i32| Some(along_x(0, z)? * (1.0 - t.y) + along_x(1, z)? * t.y);
-    Some(along_y(0)? * (1.0 - t.z) + along_y(1)? * t.z)
 }
 
 /// A slice in the report.
@@ -280,36 +269,6 @@ pub fn failure(error: RenderError) -> Failure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::{GridFormat, GridValues};
-
-    fn grid(dims: [usize; 3], value: impl Fn([usize; 3]) -> f32) -> GridFile {
-        let all = (0..dims.iter().product()).map(|n| [n % dims[0], n / dims[0] % dims[1], n / (dims[0] * dims[1])]);
-        GridFile {
-            format: GridFormat::Vti,
-            origin: DVec3::new(1.0, 2.0, 3.0),
-            spacing: 0.5,
-            dims,
-            unit: None,
-            band: None,
-            values: GridValues::Dense(all.map(value).collect()),
-            warnings: Vec::new(),
-        }
-    }
-
-    #[test]
-    fn what_is_linear_between_voxels_is_met_exactly() {
-        let file = grid([3, 4, 5], |[x, y, z]| (x as f32) - 2.0 * (y as f32) + 3.0 * (z as f32));
-        for place in [[0.0; 3], [0.3, 1.7, 2.2], [2.0, 3.0, 4.0], [1.999, 0.0, 3.5]].map(DVec3::from) {
-            let found = interpolated(&file, file.origin + place * file.spacing).expect("it is in the lattice");
-            assert!((found - place.dot(DVec3::new(1.0, -2.0, 3.0))).abs() < 1e-9, "{place}: {found}");
-        }
-        for place in [[-0.01, 1.0, 1.0], [1.0, 3.01, 1.0], [f64::NAN, 1.0, 1.0]].map(DVec3::from) {
-            assert_eq!(interpolated(&file, file.origin + place * file.spacing), None);
-        }
-        // One plane of voxels is a lattice too.
-        let flat = grid([3, 1, 2], |[x, _, z]| (x + 10 * z) as f32);
-        assert_eq!(interpolated(&flat, DVec3::new(1.25, 2.0, 3.25)), Some(5.5));
-    }
 
     #[test]
     fn slices_as_typed() {

@@ -18,10 +18,8 @@ use super::{backend, doubts, keep, limits, machine, map, negative, summary, word
 use crate::fit::{FitOptions, rounded};
 use crate::io::{Colours, Format, Loaded, Paint, Unit};
 use crate::ldi::Expression;
-use crate::mesh::{Bounds, TriMesh, ValidateOptions, Validity, validate};
-use crate::pipeline::{self, Options, Precision, VoxelSize};
-use crate::sdf::{RobustOptions, Trust};
-use crate::vote::VoteRule;
+use crate::mesh::{Bounds, TriMesh, Validity, validate};
+use crate::pipeline::{self, Advice, Operand, Options, Precision, VoxelSize};
 
 /// Meshes and what is to be made of them.
 pub struct Job<'a> {
@@ -58,7 +56,7 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
     report.options = resolved(args, unit, &options);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     if args.plan {
-        return plan(job, inputs, (&options, &scale), report);
+        return plan(job, &inputs, &expression, (&options, &scale), report);
     }
     target.iter_mut().for_each(|target| target.set_unit(unit));
     make(job, &expression, &inputs, (&options, &scale), target.as_ref(), session, report)
@@ -80,10 +78,8 @@ fn options(
     let scale = Scale { unit, diagonal, voxel: Some(voxel.spacing(longest)) };
     let options = Options {
         fit: fit(args, &scale, inputs)?,
-        classes: inputs.iter().map(Input::classes).collect(),
         orient: args.orient.into(),
-        rule: args.vote.into(),
-        robust: RobustOptions { trust: trust(args.vote.into()), ..RobustOptions::default() },
+        vote: args.vote.into(),
         collapse: !args.no_collapse,
         // What the textures take is taken already.
         max_memory: machine::memory_cap(args.max_memory).map(|cap| cap.saturating_sub(input::held_by_textures(inputs))),
@@ -92,11 +88,6 @@ fn options(
         ..Options::new(voxel)
     };
     Ok((options, scale))
-}
-
-/// Only votes that end in the winding number have no noise to be smoothed away.
-fn trust(rule: VoteRule) -> Trust {
-    if rule == VoteRule::Winding { Trust::All } else { Trust::Sure }
 }
 
 /// What `--no-fit`, `--rebuild` and `--simplify` ask for. Colours that vary within triangles would be smeared over the
@@ -127,7 +118,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
         "voxel_as_given": args.voxel.map(|length| length.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
-        "vote": options.rule,
+        "vote": options.vote,
         "backend": options.backend,
         "collapse": options.collapse,
         "fit": options.fit.is_some(),
@@ -141,7 +132,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
     })
 }
 
-fn failure(error: &pipeline::Error, inputs: &[Input], unit: Option<Unit>, args: &SolidArgs) -> Failure {
+pub(super) fn failure(error: &impl Advice, inputs: &[Input], unit: Option<Unit>, args: &SolidArgs) -> Failure {
     let labels: Vec<String> = inputs.iter().map(|input| input.label.clone()).collect();
     let unit = unit.map(|unit| unit.to_string());
     Failure::pipeline(error, &labels, unit.as_deref(), Asked { voxel: args.voxel.is_some(), memory: args.max_memory })
@@ -149,17 +140,22 @@ fn failure(error: &pipeline::Error, inputs: &[Input], unit: Option<Unit>, args: 
 
 fn plan(
     job: &Job<'_>,
-    mut inputs: Vec<Input>,
+    inputs: &[Input],
+    expression: &Expression,
     (options, scale): (&Options, &Scale),
     report: &mut RunReport,
 ) -> Result<Exit, Failure> {
     let (args, unit) = (job.args, scale.unit);
-    let meshes: Vec<TriMesh> = inputs.iter_mut().map(|input| std::mem::take(&mut input.loaded.mesh)).collect();
-    let planned = |options: &Options| match job.change {
-        None => Ok(pipeline::plan(&meshes, options)),
-        Some(change) => change.plan(&meshes[0], options, scale),
+    let failed = |e: &dyn Advice| failure(&e, inputs, unit, args);
+    // Of negative parts the plan of a change knows nothing: their difference comes first.
+    let operands = || inputs.iter().take(expression.operand_count()).map(|input| Operand::from(&input.loaded));
+    let planned = |options: &Options| match (pipeline::plan(operands(), options), job.change) {
+        (Ok(plan), Some(change)) => {
+            Ok(plan.then(change.plan(&inputs[0].loaded.mesh, &options.surface(), scale, &failed)?))
+        }
+        (plan, _) => plan.map_err(|e| failed(&e)),
     };
-    let plan = planned(options)?.map_err(|e| failure(&e, &inputs, unit, args))?;
+    let plan = planned(options)?;
     report.plan = Some(PlanEntry::Solid(plan));
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
@@ -168,8 +164,8 @@ fn plan(
     }
     match options.max_memory {
         Some(cap) if plan.memory > cap => {
-            let coarsest = Options { voxel: VoxelSize::Along(2), ..options.clone() };
-            let alone = planned(&coarsest)?.is_ok_and(|plan| plan.memory > cap);
+            let coarsest = Options { voxel: VoxelSize::Along(2), ..*options };
+            let alone = planned(&coarsest).is_ok_and(|plan| plan.memory > cap);
             let hint = if alone { INPUTS_ALONE } else { "a lower --resolution, or a larger voxel" };
             Err(Failure::memory(plan.memory, cap, args.max_memory).hint(hint))
         }
@@ -195,44 +191,34 @@ fn make(
         }
         Ok::<(), Failure>(())
     })?;
-    let (rest, of_rest);
-    let (mut inputs, mut options) = (inputs, options);
-    if job.change.is_some() && inputs.len() > 1 {
-        let carved = negative::carved(inputs, expression, options, session)?;
-        (rest, of_rest) = carved.map_err(|e| failure(&e, inputs, unit, args))?;
-        (inputs, options) = (std::slice::from_ref(&rest), &of_rest);
-    }
-    let meshes: Vec<TriMesh> = inputs.iter().map(|input| input.loaded.mesh.clone()).collect();
-    let made = match &job.change {
-        None => pipeline::boolean(&meshes, expression, options, &session.progress).map(Changed::from),
-        Some(change) => change.apply(&meshes[0], options, scale, session, report)?,
+    let operands: Vec<Operand<'_>> = inputs.iter().map(|input| (&input.loaded).into()).collect();
+    let made = pipeline::boolean(operands.iter().copied(), expression, options, &session.progress);
+    let failed = |e: &dyn Advice| failure(&e, inputs, unit, args);
+    let Changed { mut outcome, mut canal_of } = match job.change {
+        None => made.map(Changed::from).map_err(|e| failed(&e))?,
+        Some(change) => change.apply(made, &operands, &options.surface(), scale, &failed, session, report)?,
     };
-    let Changed { mut outcome, mut canal_of } = made.map_err(|e| failure(&e, inputs, unit, args))?;
     if let Some(volume) = args.drop_smaller {
+        let least = volume.resolve(scale)?;
+        let dropped = pipeline::drop_smaller(outcome, operands.iter().copied(), least, &session.progress);
         let left;
-        (outcome, left) = pipeline::drop_smaller(outcome, &meshes, volume.resolve(scale)?)
-            .map_err(|e| failure(&e, inputs, unit, args))?;
+        (outcome, left) = dropped.map_err(|e| failed(&e))?;
         if !canal_of.is_empty() {
             canal_of = left.into_iter().map(|t| canal_of[t]).collect();
         }
     }
     report.stages.extend(outcome.report.stages.iter().cloned());
-    report.warnings.extend(outcome.report.warnings.iter().cloned());
+    report.warnings.extend(outcome.report.warnings.iter().map(ToString::to_string));
     report.pipeline = Some(outcome.report.clone());
     let lost = limits::lost(report);
     let writes = target.is_some() || args.map.is_some();
     let withheld = writes && !lost.is_empty() && !args.keeps_partial();
     if let Some(path) = args.map.as_ref().filter(|_| !withheld) {
-        report.timed("map", |_| map::write(path, &outcome, &meshes, &canal_of, session))?;
+        report.timed("map", |_| map::write(path, &outcome, &operands, &canal_of, session))?;
     }
-    drop(meshes);
     if let Some(target) = target.filter(|_| !withheld) {
-        let operands: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.colours.as_ref())).collect();
-        let colours = pipeline::carry_colours(&outcome, &operands);
-        let textures: Vec<_> = inputs.iter().map(|i| (&i.loaded.mesh, i.loaded.texture.as_ref())).collect();
-        let texture = pipeline::carry_texture(&outcome, &textures);
-        let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
-        write(&outcome.mesh, paint, target, session, report)?;
+        let paint = Paint { colours: outcome.colours.as_ref(), texture: outcome.texture.as_ref(), beside: None };
+        write(&outcome.solid, paint, target, session, report)?;
     }
     let beyond: Vec<String> =
         limits::guessed(report).into_iter().chain(limits::beyond_memory(report, args.max_memory)).collect();
@@ -304,21 +290,18 @@ fn judge(
     session: &Session,
 ) -> Result<Validity, Failure> {
     check_same(&read.mesh, made, factor)?;
-    let options = ValidateOptions { self_intersections: true, weld: input::is_soup_format(read.format) };
-    let validity = validate(&read.mesh, &options, &session.progress)?;
+    let validity = validate(&read.mesh, &read.validate_options(), &session.progress)?;
     if validity.is_valid() {
         return Ok(validity);
     }
-    let problems = validity.problems().join("; ");
-    let failure =
-        Failure::new(Exit::Limit, format!("the result is not a valid solid ({problems}); it was not written"));
+    let failure = Failure::not_solid(&validity);
     Err(match moved {
         Some(moved) => failure.hint(format!(
             "{} moves vertices by up to {} so far from the origin: write OBJ, PLY, OFF or 3MF, or move the model to the origin first",
             read.format,
             words::number(moved)
         )),
-        None => failure.hint("another --resolution or --voxel; and please report it: this should not happen"),
+        None => failure,
     })
 }
 

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use glam::DVec3;
 use serde_json::json;
 
 use super::args::{CommonArgs, InputArgs, OutputArgs};
@@ -11,7 +10,7 @@ use super::choices::AnyFormat;
 use super::convert::{check_close, losses, state};
 use super::exit::{Exit, Failure};
 use super::files::{self, Made};
-use super::input::{self, Input, is_soup_format, is_stream};
+use super::input::{self, Input, is_stream};
 use super::output::{Target, write_verified};
 use super::paint::{self, Arranged};
 use super::report::{OutputEntry, RunReport};
@@ -20,7 +19,7 @@ use super::summary::{self, Row};
 use super::words::{self, UnitName};
 use crate::io::{Colours, Format, Loaded, Paint, Part, Unit, WriteOptions};
 use crate::ldi::Operands;
-use crate::mesh::{TriMesh, ValidateOptions, validate};
+use crate::mesh::{Submesh, ValidateOptions, validate};
 use crate::shells::{bodies, shells};
 
 /// The name of files in a folder, before their numbers.
@@ -70,7 +69,7 @@ pub fn run(args: &SplitArgs, session: &Session, report: &mut RunReport) -> Resul
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     let Some(input) = inputs.pop() else { return Err(Failure::internal("nothing was read")) };
     let format = names.format(args, input.loaded.format);
-    let look = ValidateOptions { self_intersections: false, weld: is_soup_format(input.loaded.format) };
+    let look = ValidateOptions { self_intersections: false, ..input.loaded.validate_options() };
     report.inputs[0].validity = Some(validate(&input.loaded.mesh, &look, &session.progress)?);
     let pieces = report.timed("split", |_| pieces(&input, session))?;
     let options = WriteOptions { format, ascii: args.writing.ascii, unit };
@@ -156,7 +155,7 @@ fn pieces(input: &Input, session: &Session) -> Result<Vec<Piece>, Failure> {
     let loaded = &input.loaded;
     let mesh = &loaded.mesh;
     // Shared places make one surface where the format cannot say it otherwise.
-    let welded = if is_soup_format(loaded.format) { mesh.welded() } else { mesh.clone() };
+    let welded = if loaded.format.repeats_vertices() { mesh.welded() } else { mesh.clone() };
     let shells = shells(&welded, &Operands::new([welded.triangles.len()]));
     let mut pieces = Vec::new();
     for body in bodies(&welded, &shells, &session.progress)? {
@@ -175,15 +174,7 @@ fn pieces(input: &Input, session: &Session) -> Result<Vec<Piece>, Failure> {
 /// Some triangles of a file, in their order, with their colours.
 fn part_of(loaded: &Loaded, triangles: &[u32]) -> Loaded {
     let mesh = &loaded.mesh;
-    let mut vertices: Vec<u32> = triangles.iter().flat_map(|&t| mesh.triangles[t as usize]).collect();
-    vertices.sort_unstable();
-    vertices.dedup();
-    let number = |v: u32| vertices.partition_point(|&other| other < v) as u32;
-    let position = |&v: &u32| -> DVec3 { mesh.positions[v as usize] };
-    let part = TriMesh {
-        positions: vertices.iter().map(position).collect(),
-        triangles: triangles.iter().map(|&t| mesh.triangles[t as usize].map(number)).collect(),
-    };
+    let Submesh { mesh: part, vertices } = mesh.submesh(triangles);
     let colours = loaded.colours.as_ref().map(|colours| match colours {
         Colours::Faces(_) => Colours::Faces(triangles.iter().map(|&t| colours.corners(mesh, t as usize)[0]).collect()),
         Colours::Vertices(list) => {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::surface::{Frame, Surface};
+use super::surface::{Frame, ScaledFaces};
 use crate::mesh::ClosestTree;
 use crate::progress::{Progress, Stopped};
 
@@ -15,17 +15,17 @@ const CHUNK: usize = 1 << 12;
 /// area-uniform samples, the largest over these and all vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Distances {
-    /// Mean.
+    /// The mean distance.
     pub mean: f64,
-    /// Root of the mean square.
+    /// The root of the mean square of the distances.
     pub rms: f64,
     /// What 99 of 100 samples do not exceed.
     pub p99: f64,
-    /// Largest.
+    /// The largest distance.
     pub max: f64,
-    /// Where the largest is, on the mesh it is measured from.
+    /// The place of the largest distance, on the mesh it is measured from.
     pub max_at: [f64; 3],
-    /// The first four, relative to the diagonal of A's bounding box.
+    /// The mean, RMS, p99 and largest distance relative to the diagonal of A's bounding box.
     pub relative: Relative,
 }
 
@@ -33,28 +33,28 @@ pub struct Distances {
 /// of each p99 and maximum.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Symmetric {
-    /// Mean.
+    /// The mean distance.
     pub mean: f64,
-    /// Root of the mean square.
+    /// The root of the mean square of the distances.
     pub rms: f64,
-    /// The larger p99.
+    /// The larger of both p99.
     pub p99: f64,
     /// The largest distance of all: the Hausdorff distance, as far as samples and vertices can tell it.
     pub max: f64,
-    /// The same, relative to the diagonal of A's bounding box.
+    /// All four, relative to the diagonal of A's bounding box.
     pub relative: Relative,
 }
 
 /// Distances relative to the diagonal of A's bounding box.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Relative {
-    /// Mean.
+    /// The mean distance.
     pub mean: f64,
-    /// Root of the mean square.
+    /// The root of the mean square of the distances.
     pub rms: f64,
-    /// 99th percentile.
+    /// What 99 of 100 samples do not exceed.
     pub p99: f64,
-    /// Largest.
+    /// The largest distance.
     pub max: f64,
 }
 
@@ -103,7 +103,7 @@ impl Scaled {
 
 /// The distances from `count` samples and all vertices of `from` to the surface in `to`.
 pub(super) fn measure(
-    from: &Surface,
+    from: &ScaledFaces,
     to: &ClosestTree<[DVec3; 3]>,
     count: usize,
     progress: &Progress,

@@ -19,7 +19,7 @@ use crate::progress::{Progress, Stopped};
 pub use deviation::{DeviationMap, deviation_map};
 pub use distance::{Distances, Relative, Symmetric};
 pub use sharp::SharpEdges;
-use surface::{Frame, Surface};
+use surface::{Frame, ScaledFaces};
 
 /// Parts of the longest side of A's box that the edge tolerance is a quarter of, where none is given.
 const GRID: f64 = 256.0;
@@ -48,11 +48,11 @@ impl Default for CompareOptions {
 /// `triangles`. A measure is `None` where there is nothing to measure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Measures of A.
+    /// The measures of A.
     pub a: Measures,
-    /// Measures of B.
+    /// The measures of B.
     pub b: Measures,
-    /// Samples taken on each.
+    /// The number of samples taken on each mesh.
     pub samples: usize,
     /// Diagonal of A's bounding box, model units; what relative distances are parts of.
     pub diagonal: f64,
@@ -60,7 +60,7 @@ pub struct Comparison {
     pub a_to_b: Option<Distances>,
     /// From B to the nearest point of A.
     pub b_to_a: Option<Distances>,
-    /// Both ways.
+    /// The distances both ways taken together.
     pub symmetric: Option<Symmetric>,
     /// (volume of B − volume of A) / |volume of A|; `None` unless A is closed.
     pub volume_difference: Option<f64>,
@@ -68,14 +68,14 @@ pub struct Comparison {
     pub area_difference: Option<f64>,
     /// Normals of A's samples against those of the nearest triangles of B.
     pub normals: Option<Normals>,
-    /// Sharp edges.
+    /// How the sharp edges of both agree.
     pub sharp: SharpEdges,
 }
 
 /// Measures of one mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Measures {
-    /// Triangles, all of them.
+    /// All triangles, also those without area.
     pub triangles: usize,
     /// Whether every edge has at least two triangles; vertices of equal coordinates count as one.
     pub closed: bool,
@@ -116,7 +116,7 @@ pub fn compare(a: &TriMesh, b: &TriMesh, options: &CompareOptions, progress: &Pr
     let samples = options.samples.max(1);
     let frame = Frame::around(a, b);
     let [a, b] = [frame.scaled(a), frame.scaled(b)];
-    let [on_a, on_b] = [Surface::new(&a, &frame), Surface::new(&b, &frame)];
+    let [on_a, on_b] = [ScaledFaces::new(&a, &frame), ScaledFaces::new(&b, &frame)];
     let unit = on_a.longest_side() / GRID;
     let tolerance = options.edge_tolerance.map_or(0.25 * unit, |given| given * frame.scale);
     let mut comparison = Comparison {
@@ -147,7 +147,7 @@ pub fn compare(a: &TriMesh, b: &TriMesh, options: &CompareOptions, progress: &Pr
 }
 
 /// The angles between the normals of paired faces of A and B.
-fn normals(pairs: &[[u32; 2]], a: &Surface, b: &Surface, oriented: bool) -> Normals {
+fn normals(pairs: &[[u32; 2]], a: &ScaledFaces, b: &ScaledFaces, oriented: bool) -> Normals {
     let angle = |&[own, other]: &[u32; 2]| {
         let cosine = a.normal(own).dot(b.normal(other));
         let cosine = if oriented { cosine } else { cosine.abs() };

@@ -34,7 +34,7 @@ impl Frame {
 }
 
 /// The faces of a mesh that have an area, scaled.
-pub(super) struct Surface {
+pub(super) struct ScaledFaces {
     corners: Vec<[DVec3; 3]>,
     normals: Vec<DVec3>,
     /// Area of each face and of all before it.
@@ -46,7 +46,7 @@ pub(super) struct Surface {
     pub(super) rounding: f64,
 }
 
-impl Surface {
+impl ScaledFaces {
     /// The faces of a mesh that is already in `frame`.
     pub(super) fn new(mesh: &TriMesh, frame: &Frame) -> Self {
         let mut used = vec![false; mesh.positions.len()];

@@ -3,30 +3,12 @@
 use glam::DVec3;
 
 use crate::mesh::TriMesh;
+use crate::mesh::edges::Union;
 
 /// For each vertex the lowest vertex of its shell.
 pub(super) fn shells(mesh: &TriMesh) -> Vec<u32> {
-    let mut parent: Vec<u32> = (0..mesh.positions.len() as u32).collect();
-    let root = |parent: &mut Vec<u32>, mut v: u32| {
-        while parent[v as usize] != v {
-            let above = parent[parent[v as usize] as usize];
-            parent[v as usize] = above;
-            v = above;
-        }
-        v
-    };
-    for &[a, b, c] in &mesh.triangles {
-        let roots = [a, b, c].map(|v| root(&mut parent, v));
-        let lowest = roots[0].min(roots[1]).min(roots[2]);
-        for r in roots {
-            parent[r as usize] = lowest;
-        }
-    }
-    // parents are never above their children, so one pass in order finishes
-    for v in 0..parent.len() {
-        parent[v] = parent[parent[v] as usize];
-    }
-    parent
+    let mut sets = Union::of_triangles(mesh.positions.len(), mesh.triangles.iter().copied());
+    (0..mesh.positions.len() as u32).map(|v| sets.root(v)).collect()
 }
 
 /// Adds six times the signed volume under each triangle to its shell's entry. Volumes are measured

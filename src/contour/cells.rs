@@ -4,10 +4,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 use robust::{Coord, orient2d};
 
-use super::signs::{Brick, Crossed, Signs, Tile};
+use super::signs::{Brick, Crossed, Neighbour, Signs};
 use super::table::{LOOPS, Loop, MOST_VERTICES, edge_ends};
 use super::vertices::{TASK, Vertices, bits, locate, value};
-use crate::lattice::Grid;
+use crate::lattice::{Grid, trilinear};
 use crate::mesh::triangles_intersect;
 use crate::progress::{Progress, Stopped};
 
@@ -104,7 +104,7 @@ impl Tables<'_> {
         for (i, &edge) in shape.edges.iter().enumerate() {
             let low = edge_ends(edge).0 as usize;
             let [x, y, z] = [0, 1, 2].map(|axis| cell.at[axis] + (low >> axis & 1));
-            let (Tile::Visited(owner), index) = locate(cell.brick, x, y, z) else { return None };
+            let (Neighbour::Visited(owner), index) = locate(cell.brick, x, y, z) else { return None };
             let crossed = &self.crossed[owner as usize];
             let local = crossed.number(edge as usize / 4, index as u32 & 63, index >> 6);
             polygon.ids[i] = self.first[owner as usize] + local;
@@ -149,16 +149,10 @@ impl Tables<'_> {
     fn corner_values(&self, cell: &Cell<'_>) -> [f64; 8] {
         let [x, y, z] = cell.at;
         std::array::from_fn(|k| {
-            let (tile, index) = locate(cell.brick, x + (k & 1), y + (k >> 1 & 1), z + (k >> 2));
-            value(self.signs, self.distance, tile, index)
+            let (neighbour, index) = locate(cell.brick, x + (k & 1), y + (k >> 1 & 1), z + (k >> 2));
+            value(self.signs, self.distance, neighbour, index)
         })
     }
-}
-
-fn trilinear(corners: &[f64; 8], p: DVec3) -> f64 {
-    let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
-    let along_x: [f64; 4] = std::array::from_fn(|k| mix(corners[2 * k], corners[2 * k + 1], p.x));
-    mix(mix(along_x[0], along_x[1], p.y), mix(along_x[2], along_x[3], p.y), p.z)
 }
 
 /// How many pairs of triangles meet where they should not, with the triangles of the cell's other

@@ -9,7 +9,8 @@
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-use super::{ContourVertex, NO_TRIANGLE};
+use super::{ContourVertex, Ground};
+use crate::mesh::Plane;
 
 /// One minus the cosine of the angle between planes from which they make an edge (20°). Curved
 /// surfaces at usual resolutions stay below; from 30° on the judges of sharpness count.
@@ -33,7 +34,7 @@ struct Cube {
 /// The list of members and the groups, at least two vertices each, no vertex in two of them.
 pub(super) fn groups(
     vertices: &[ContourVertex],
-    planes: &(impl Fn(u32) -> Option<(DVec3, f64)> + Sync),
+    planes: &(impl Fn(Ground) -> Option<Plane> + Sync),
 ) -> (Vec<u32>, Vec<Candidate>) {
     let normals: Vec<Option<DVec3>> = vertices.par_iter().map(|vertex| outward(vertex, planes)).collect();
     let (inner, inner_cubes) = cubes(vertices, &normals, |vertex| vertex.voxel);
@@ -64,9 +65,9 @@ pub(super) fn groups(
     (members, candidates)
 }
 
-/// The normal of a vertex's source triangle, turned so that it looks from inside to outside.
-fn outward(vertex: &ContourVertex, planes: &impl Fn(u32) -> Option<(DVec3, f64)>) -> Option<DVec3> {
-    let (normal, _) = (vertex.triangle != NO_TRIANGLE).then(|| planes(vertex.triangle)).flatten()?;
+/// The normal of what a vertex lies on, turned so that it looks from inside to outside.
+fn outward(vertex: &ContourVertex, planes: &impl Fn(Ground) -> Option<Plane>) -> Option<DVec3> {
+    let normal = planes(vertex.ground)?.normal;
     let along = normal.dot((vertex.outside - vertex.voxel).as_dvec3());
     Some(if along < 0.0 { -normal } else { normal })
 }
@@ -113,27 +114,35 @@ fn sharpness(normals: impl Iterator<Item = DVec3>) -> f64 {
 mod tests {
     use super::*;
 
+    /// The planes of two sides that look along x and y.
+    fn planes(ground: Ground) -> Option<Plane> {
+        let normal = if ground == Ground::Triangle(0) { DVec3::X } else { DVec3::Y };
+        Some(Plane { normal, offset: 0.0 })
+    }
+
     /// Faces of voxels along the inner edge of an L, whose arms look along x and y.
     #[test]
     fn a_concave_edge_merges_around_the_outside_voxel() {
-        let planes = |t: u32| Some((if t == 0 { DVec3::X } else { DVec3::Y }, 0.0));
-        let face = |triangle: u32, voxel: IVec3, step: IVec3| ContourVertex { triangle, voxel, outside: voxel + step };
+        let face = |n: u32, voxel: IVec3, step: IVec3| ContourVertex {
+            ground: Ground::Triangle(n),
+            voxel,
+            outside: voxel + step,
+        };
         let corner = IVec3::new(1, 1, 0); // outside
         let vertices = [face(0, IVec3::new(0, 1, 0), IVec3::X), face(1, IVec3::new(1, 0, 0), IVec3::Y)];
         let (members, candidates) = groups(&vertices, &planes);
         assert_eq!(members, [0, 1]);
         assert_eq!(candidates, [Candidate { members: 0..2, voxel: corner }]);
         // On one plane nothing speaks for the outside voxel.
-        assert_eq!(groups(&vertices, &|_| Some((DVec3::ONE.normalize(), 0.0))).1, []);
+        assert_eq!(groups(&vertices, &|_| Some(Plane { normal: DVec3::ONE.normalize(), offset: 0.0 })).1, []);
     }
 
     #[test]
     fn a_convex_edge_merges_around_the_inside_voxel() {
-        let planes = |t: u32| Some((if t == 0 { DVec3::X } else { DVec3::Y }, 0.0));
         let voxel = IVec3::new(3, 4, 5);
         let vertices = [
-            ContourVertex { triangle: 0, voxel, outside: voxel + IVec3::X },
-            ContourVertex { triangle: 1, voxel, outside: voxel + IVec3::Y },
+            ContourVertex { ground: Ground::Triangle(0), voxel, outside: voxel + IVec3::X },
+            ContourVertex { ground: Ground::Triangle(1), voxel, outside: voxel + IVec3::Y },
         ];
         assert_eq!(groups(&vertices, &planes).1, [Candidate { members: 0..2, voxel }]);
     }

@@ -12,45 +12,43 @@
 //! lattice stays a lattice of boxes, as long as `h` is some ulp (of `f32`, at the largest
 //! coordinate) wide.
 //!
-//! A distance of exactly 0 counts as outside, and so does every voxel beyond [`Lattice::dims`].
+//! A distance of exactly 0 counts as outside, and so does every voxel beyond [`Lattice::dims`](crate::lattice::Lattice::dims).
 
 mod bodies;
 mod cells;
 mod collapse;
 mod groups;
+mod merging;
 mod place;
 mod signs;
 mod star;
 mod table;
 mod vertices;
 
-pub use collapse::{Collapsed, Merge, collapse_same_voxel};
+pub use collapse::collapse_same_voxel;
 
 use glam::IVec3;
 use rayon::prelude::*;
 
-use crate::lattice::{Grid, Lattice};
+use crate::lattice::DistanceField;
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
-
-/// Stands for a source triangle where there is none.
-pub const NO_TRIANGLE: u32 = u32::MAX;
 
 /// The exact crossing of the surface with a lattice edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
     /// Place on the edge: 0 at its lower voxel, 1 at its upper one.
     pub t: f64,
-    /// The input triangle that is crossed, or [`NO_TRIANGLE`].
-    pub triangle: u32,
+    /// The triangle of the input that is crossed, where it is one.
+    pub triangle: Option<u32>,
 }
 
 /// The lattice edge from `voxel` to the next voxel along `axis`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Edge {
-    /// The lower end.
+    /// The voxel at its lower end.
     pub voxel: IVec3,
-    /// 0, 1 or 2: x, y or z.
+    /// The axis along which it runs: 0, 1 or 2 for x, y or z.
     pub axis: u8,
 }
 
@@ -68,11 +66,24 @@ impl Default for ContourOptions {
     }
 }
 
+/// What a vertex of a contour lies on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Ground {
+    /// Nothing that is known: no triangle was crossed there.
+    #[default]
+    Unknown,
+    /// The triangle of the input with this number.
+    Triangle(u32),
+    /// A plane where the input has no triangle, by its number in a list that comes with the contour: the lid over a hole, or
+    /// the tangent plane of a level.
+    Plane(u32),
+}
+
 /// Where a vertex comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ContourVertex {
-    /// The input triangle it lies on, or [`NO_TRIANGLE`].
-    pub triangle: u32,
+    /// What the vertex lies on.
+    pub ground: Ground,
     /// The voxel inside the solid to whose cube it belongs.
     pub voxel: IVec3,
     /// The voxel at the other end of its lattice edge, outside of the solid.
@@ -84,28 +95,58 @@ pub struct ContourVertex {
 pub struct Contour {
     /// The surface, model units. Every coordinate is exactly an `f32`.
     pub mesh: TriMesh,
-    /// One for each vertex of the mesh.
+    /// Where each vertex of the mesh comes from.
     pub vertices: Vec<ContourVertex>,
     /// Loops that had no triangulation free of folds. Not seen yet; if it is not 0, the mesh may
     /// intersect itself there.
     pub folded_loops: usize,
 }
 
+/// Which vertices are merged: those of which voxels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Merge {
+    /// Those of every voxel, as in the paper.
+    All,
+    /// Those of voxels whose vertices lie nearly in one plane, so that merging them loses nothing.
+    Flat {
+        /// How far the merged vertex may lie beside the planes, h.
+        within: f64,
+    },
+}
+
+/// What [`collapse_same_voxel`] made of a contour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Collapsed {
+    /// The coarser contour. The voxel of a vertex stays the one it belongs to.
+    pub contour: Contour,
+    /// The raw vertices that became vertex v: `members[starts[v]..starts[v + 1]]` in `raw`.
+    pub starts: Vec<u32>,
+    /// The numbers of raw vertices, vertex after vertex of the merged contour; `starts` says where each one's begin.
+    pub members: Vec<u32>,
+    /// The vertices of the raw contour.
+    pub raw: Vec<ContourVertex>,
+    /// Voxels whose vertices became one.
+    pub merged: usize,
+    /// Voxels whose vertices stayed apart, because merging them would have made the mesh
+    /// non-manifold, turned a triangle over, or made triangles intersect.
+    pub kept_apart: usize,
+}
+
 /// The surface between the voxels of negative `distance` and the others.
 ///
-/// `distance` is in h; its signs decide and its values choose the triangulations. `crossing` gives
+/// The signs of `distance` decide, and its values choose the triangulations. `crossing` gives
 /// the exact place of the surface on a lattice edge whose ends differ; where it gives none, the
 /// place is interpolated from the distances. Wherever two neighbouring voxels differ in sign, both
 /// must lie in active bricks or one of them beyond the lattice and the other in an active brick.
 ///
 /// The order of vertices and triangles is that of bricks, voxels and axes. Bærentzen §5.
 pub fn contour(
-    lattice: &Lattice,
-    distance: &Grid<f32>,
+    distance: &DistanceField,
     crossing: &(impl Fn(Edge) -> Option<Crossing> + Sync),
     options: &ContourOptions,
     progress: &Progress,
 ) -> Result<Contour, Stopped> {
+    let DistanceField { lattice, grid: distance, .. } = distance;
     let signs = signs::Signs::new(lattice, distance);
     let crossed: Vec<signs::Crossed> = signs.bricks.par_iter().map(|b| signs::Crossed::new(&signs, b)).collect();
     let first: Vec<u32> = crossed

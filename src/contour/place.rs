@@ -2,8 +2,9 @@
 
 use glam::{DVec3, IVec3};
 
-use super::NO_TRIANGLE;
+use super::Ground;
 use crate::lattice::Lattice;
+use crate::mesh::Plane;
 use crate::mesh::least_squares::least_squares;
 
 /// Weight of the pull towards the mean of the merged vertices, against 1 for a plane.
@@ -20,26 +21,25 @@ const PULL_WITHOUT_PLANE: f64 = 0.1;
 /// its three faces' vertices, nearly.
 const REACH: f64 = 1.0;
 
-/// The place for the vertices of `voxel`, given with their source triangles, model units, and the
-/// source triangle it belongs to: the point that minimises the squared distances to the different
-/// planes of these triangles, pulled a little towards the mean, within [`REACH`] of it and within
+/// The place for the vertices of `voxel`, given with what they lie on, model units, and what the place itself lies on: the
+/// point that minimises the squared distances to the different planes of these grounds, pulled a little towards the mean, within [`REACH`] of it and within
 /// the cells around the voxel. Every coordinate is an `f32`.
 pub(super) fn place(
-    vertices: impl Iterator<Item = (DVec3, u32)> + Clone,
+    vertices: impl Iterator<Item = (DVec3, Ground)> + Clone,
     voxel: IVec3,
     lattice: &Lattice,
-    planes: &impl Fn(u32) -> Option<(DVec3, f64)>,
-) -> (DVec3, u32) {
+    planes: &impl Fn(Ground) -> Option<Plane>,
+) -> (DVec3, Ground) {
     let mean = vertices.clone().map(|(p, _)| p).sum::<DVec3>() / vertices.clone().count().max(1) as f64;
-    let mut known: [(u32, DVec3, f64); 6] = [(NO_TRIANGLE, DVec3::ZERO, 0.0); 6];
+    let mut known = [(Ground::Unknown, DVec3::ZERO, 0.0); 6];
     let (mut count, mut pull) = (0, PULL);
-    for (_, triangle) in vertices.clone() {
-        if known[..count].iter().any(|k| k.0 == triangle) {
+    for (_, ground) in vertices.clone() {
+        if known[..count].iter().any(|k| k.0 == ground) {
             continue;
         }
-        match (triangle != NO_TRIANGLE).then(|| planes(triangle)).flatten() {
-            Some((normal, offset)) if count < known.len() => {
-                known[count] = (triangle, normal, (offset - normal.dot(mean)) / lattice.h);
+        match planes(ground) {
+            Some(plane) if count < known.len() => {
+                known[count] = (ground, plane.normal, -plane.distance(mean) / lattice.h);
                 count += 1;
             }
             _ => pull += PULL_WITHOUT_PLANE,
@@ -51,9 +51,9 @@ pub(super) fn place(
     let near = lattice.to_lattice(mean) + step;
     let centre = voxel.as_dvec3();
     let at = lattice.to_model(near.clamp(centre - 1.0, centre + 1.0)).as_vec3().as_dvec3();
-    let off = |k: &(u32, DVec3, f64)| (k.1.dot(step) - k.2).abs();
+    let off = |k: &(Ground, DVec3, f64)| (k.1.dot(step) - k.2).abs();
     let source = known.iter().min_by(|a, b| off(a).total_cmp(&off(b)));
-    (at, source.map_or(NO_TRIANGLE, |k| k.0))
+    (at, source.map_or(Ground::Unknown, |k| k.0))
 }
 
 #[cfg(test)]
@@ -64,11 +64,12 @@ mod tests {
 
     /// Merges points given in lattice coordinates, one plane through each, around voxel (4,4,4).
     fn placed(points: &[(DVec3, DVec3)]) -> DVec3 {
-        let planes = |k: u32| {
+        let planes = |ground: Ground| {
+            let Ground::Plane(k) = ground else { return None };
             let (point, normal) = points[k as usize];
-            Some((normal, normal.dot(LATTICE.to_model(point))))
+            Some(Plane { normal, offset: normal.dot(LATTICE.to_model(point)) })
         };
-        let vertices = points.iter().zip(0..).map(|(p, k)| (LATTICE.to_model(p.0), k));
+        let vertices = points.iter().zip(0..).map(|(p, k)| (LATTICE.to_model(p.0), Ground::Plane(k)));
         LATTICE.to_lattice(place(vertices, IVec3::splat(4), &LATTICE, &planes).0)
     }
 

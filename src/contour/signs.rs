@@ -16,7 +16,7 @@ const ROW: u64 = 0xff;
 
 /// A brick as its neighbours see it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Tile {
+pub(super) enum Neighbour {
     /// Number in the list of visited bricks.
     Visited(u32),
     /// Not visited; all voxels have this sign (true: inside).
@@ -31,7 +31,7 @@ pub(super) struct Brick {
     /// Where its distances are.
     pub slot: Slot,
     /// Itself and its upper neighbours; bits x, y, z of the index say where.
-    pub around: [Tile; 8],
+    pub around: [Neighbour; 8],
 }
 
 /// The signs of all bricks that own a cell with corners of both signs.
@@ -66,8 +66,8 @@ impl Signs {
                 around: std::array::from_fn(|k| {
                     let b = at + offset(k);
                     match numbers.get(&b) {
-                        Some(&n) => Tile::Visited(n),
-                        None => Tile::Uniform(uniform_sign(lattice, distance.bricks.slot(b), b)),
+                        Some(&n) => Neighbour::Visited(n),
+                        None => Neighbour::Uniform(uniform_sign(lattice, distance.bricks.slot(b), b)),
                     }
                 }),
             })
@@ -75,13 +75,13 @@ impl Signs {
         Self { bricks, planes }
     }
 
-    /// The signs of a tile.
+    /// The signs of a neighbour.
     #[inline]
-    pub fn planes(&self, tile: Tile) -> &Planes {
-        match tile {
-            Tile::Visited(n) => &self.planes[n as usize],
-            Tile::Uniform(true) => &[u64::MAX; 8],
-            Tile::Uniform(false) => &[0; 8],
+    pub fn planes(&self, neighbour: Neighbour) -> &Planes {
+        match neighbour {
+            Neighbour::Visited(n) => &self.planes[n as usize],
+            Neighbour::Uniform(true) => &[u64::MAX; 8],
+            Neighbour::Uniform(false) => &[0; 8],
         }
     }
 
@@ -173,15 +173,15 @@ fn lower_neighbours(lattice: &Lattice, distance: &Grid<f32>, planes: &[Planes]) 
 /// and their numbers within it: by voxel, then by axis.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Crossed {
-    /// For each axis, a bit per voxel.
+    /// For each axis, a bit per voxel: whether the edge from there is crossed.
     pub masks: [Planes; 3],
     before: [u16; 8],
-    /// How many there are.
+    /// How many lattice edges are crossed.
     pub count: u32,
 }
 
 impl Crossed {
-    /// Finds them.
+    /// Finds the crossed edges that a brick owns.
     pub fn new(signs: &Signs, brick: &Brick) -> Self {
         let own = signs.shifted(brick, 0);
         let masks = [1, 2, 4].map(|k| {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::collapse::Merging;
+use super::merging::Merging;
 
 /// Most triangles around a vertex; a merged voxel that would have more is split.
 const MOST: usize = 48;

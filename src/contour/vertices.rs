@@ -3,8 +3,8 @@
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-use super::signs::{Brick, Crossed, Signs, Tile};
-use super::{ContourOptions, ContourVertex, Crossing, Edge, NO_TRIANGLE};
+use super::signs::{Brick, Crossed, Neighbour, Signs};
+use super::{ContourOptions, ContourVertex, Crossing, Edge, Ground};
 use crate::lattice::{BRICK, Grid, Lattice, Slot};
 use crate::progress::{Progress, Stopped};
 
@@ -22,13 +22,13 @@ pub(super) struct Vertices {
     pub sources: Vec<ContourVertex>,
 }
 
-/// The distance at a voxel of a tile.
+/// The distance at a voxel of a neighbour.
 #[inline]
-pub(super) fn value(signs: &Signs, distance: &Grid<f32>, tile: Tile, index: usize) -> f64 {
-    let slot = match tile {
-        Tile::Visited(n) => signs.bricks[n as usize].slot,
-        Tile::Uniform(true) => Slot::Inside,
-        Tile::Uniform(false) => Slot::Outside,
+pub(super) fn value(signs: &Signs, distance: &Grid<f32>, neighbour: Neighbour, index: usize) -> f64 {
+    let slot = match neighbour {
+        Neighbour::Visited(n) => signs.bricks[n as usize].slot,
+        Neighbour::Uniform(true) => Slot::Inside,
+        Neighbour::Uniform(false) => Slot::Outside,
     };
     f64::from(match slot {
         Slot::Active(n) => distance.values[n as usize][index],
@@ -37,9 +37,9 @@ pub(super) fn value(signs: &Signs, distance: &Grid<f32>, tile: Tile, index: usiz
     })
 }
 
-/// The tile and the index in it of the voxel (x, y, z), each 0 to 8, seen from `brick`.
+/// The neighbour and the index in it of the voxel (x, y, z), each 0 to 8, seen from `brick`.
 #[inline]
-pub(super) fn locate(brick: &Brick, x: usize, y: usize, z: usize) -> (Tile, usize) {
+pub(super) fn locate(brick: &Brick, x: usize, y: usize, z: usize) -> (Neighbour, usize) {
     (brick.around[x >> 3 | y >> 3 << 1 | z >> 3 << 2], (x & 7) | (y & 7) << 3 | (z & 7) << 6)
 }
 
@@ -80,17 +80,17 @@ pub(super) fn vertices(
         let inside_low = (signs.planes(brick.around[0])[z] >> k) & 1 == 1;
         let hit = crossing(edge);
         let place = hit.map(|c| c.t).filter(|t| t.is_finite()).unwrap_or_else(|| {
-            let (tile, index) = locate(brick, x, y, z);
-            let low = value(signs, distance, tile, index);
-            let (tile, index) =
+            let (neighbour, index) = locate(brick, x, y, z);
+            let low = value(signs, distance, neighbour, index);
+            let (neighbour, index) =
                 locate(brick, x + usize::from(axis == 0), y + usize::from(axis == 1), z + usize::from(axis == 2));
-            interpolated(low, value(signs, distance, tile, index))
+            interpolated(low, value(signs, distance, neighbour, index))
         });
         let place = if place.is_finite() { place.clamp(margin, 1.0 - margin) } else { 0.5 };
         let (low, high) = (edge.voxel, edge.voxel + IVec3::AXES[axis]);
         let (voxel, outside) = if inside_low { (low, high) } else { (high, low) };
-        let triangle = hit.map_or(NO_TRIANGLE, |c| c.triangle);
-        (rounded(lattice, edge, place), place, ContourVertex { triangle, voxel, outside })
+        let ground = hit.and_then(|c| c.triangle).map_or(Ground::Unknown, Ground::Triangle);
+        (rounded(lattice, edge, place), place, ContourVertex { ground, voxel, outside })
     };
     let parts: Vec<Vertices> = signs
         .bricks

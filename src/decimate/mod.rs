@@ -26,7 +26,8 @@ use collapse::Limits;
 use guard::Zone;
 use work::Work;
 
-/// Options of [`decimate`]. It goes on until one of the limits is reached; with none, as far as it goes.
+/// Options of [`decimate`], which goes on until one of the limits is reached; without any limit it goes on as long as the
+/// solid stays valid.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DecimateOptions {
     /// Stop when there are no more triangles than this.
@@ -53,7 +54,7 @@ pub struct DecimateReport {
     pub reached: bool,
     /// The bound for the deviation, model units, if one was given.
     pub max_deviation: Option<f64>,
-    /// How often it was done again because triangles would have met.
+    /// How often the decimation was done again because triangles would have met.
     pub repeats: usize,
 }
 
@@ -62,18 +63,18 @@ pub struct DecimateReport {
 pub struct Decimated {
     /// The solid, valid as the input was.
     pub mesh: TriMesh,
-    /// For each of its triangles the one of the input that it grew out of.
+    /// For each triangle of the decimated solid the triangle of the input that it grew out of.
     pub origins: Vec<u32>,
     /// The state of the input.
     pub before: Validity,
-    /// What was done.
+    /// The account of what was done.
     pub report: DecimateReport,
 }
 
 /// Why [`decimate`] has no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DecimateError {
-    /// Cancelled.
+    /// Interrupted, or the deadline passed.
     #[error(transparent)]
     Stopped(#[from] Stopped),
     /// The input is no valid solid.
@@ -90,7 +91,7 @@ pub enum DecimateError {
 /// Times it is done again before all of the surface is looked at.
 const MOST_REPEATS: usize = 6;
 
-/// Takes triangles away from a valid solid, and leaves a valid solid: closed, oriented, a manifold, without triangles that
+/// Takes triangles away from a valid solid so that it stays a valid solid: closed, oriented, a manifold, without triangles that
 /// meet, with as many bodies and tunnels as before. Vertices that stay keep their coordinates.
 ///
 /// # Errors

@@ -11,32 +11,32 @@ pub fn offset(field: Shared, by: f64) -> Shared {
     Arc::new(Combined::new(vec![field], Offset { by }))
 }
 
-/// What is within half of `thickness`, model units, of the surface.
+/// A wall along the surface: all points within half of `thickness`, model units, of it.
 pub fn shell(field: Shared, thickness: f64) -> Shared {
-    Arc::new(Combined::new(vec![field], Shell { half: thickness / 2.0 }))
+    Arc::new(Combined::new(vec![field], Wall { half: thickness / 2.0 }))
 }
 
-/// What is outside.
+/// The outside of a field, as a solid.
 pub fn complement(field: Shared) -> Shared {
     Arc::new(Combined::new(vec![field], Complement))
 }
 
-/// What is in one of the fields: the least of them ("Boolean operations"; the greatest there, where inside is positive).
+/// The union, all points in at least one of the fields: the least of them ("Boolean operations"; the greatest there, where inside is positive).
 pub fn union(fields: Vec<Shared>) -> Shared {
     Arc::new(Combined::new(fields, Pick { greatest: false }))
 }
 
-/// What is in all of the fields.
+/// The intersection: all points that are in each of the fields.
 pub fn intersection(fields: Vec<Shared>) -> Shared {
     Arc::new(Combined::new(fields, Pick { greatest: true }))
 }
 
-/// What is in the first field and in none of the others.
+/// The difference: all points in the first field and in none of the others.
 pub fn difference(first: Shared, others: Vec<Shared>) -> Shared {
     intersection(std::iter::once(first).chain(others.into_iter().map(complement)).collect())
 }
 
-/// What is in an odd number of the fields: of two, in exactly one.
+/// The symmetric difference: all points in an odd number of the fields, of two fields in exactly one.
 pub fn symmetric_difference(fields: Vec<Shared>) -> Shared {
     Arc::new(Combined::new(fields, Odd))
 }
@@ -50,13 +50,13 @@ pub fn average(fields: Vec<Shared>, weights: &[f64]) -> Shared {
     Arc::new(Combined::new(fields, Weighted { weights }))
 }
 
-/// From `a` at `t` = 0 to `b` at 1: (1 − t) a + t b ("Surface interpolation"; Sanchez et al. 2015 §6.3, where both are
+/// A shape between two others, `a` at `t` = 0 and `b` at 1: (1 − t) a + t b ("Surface interpolation"; Sanchez et al. 2015 §6.3, where both are
 /// filtered).
 pub fn morph(a: Shared, b: Shared, t: f64) -> Shared {
     average(vec![a, b], &[1.0 - t, t])
 }
 
-/// The same, each field divided by its radius, so that the smaller shape does not vanish at once. The radii are
+/// What [`morph`] gives, each field divided by its radius, so that the smaller shape does not vanish at once. The radii are
 /// the greatest depths inside, model units: see [`depth`].
 pub fn morph_by_radii(fields: [Shared; 2], radii: [f64; 2], t: f64) -> Shared {
     let between = radii[0] * (1.0 - t) + radii[1] * t;
@@ -115,8 +115,8 @@ impl Rule for Offset {
         ranges[0].rising(|v| v - self.by)
     }
 
-    fn steepness(&self, steepness: &[f64]) -> f64 {
-        steepness[0]
+    fn lipschitz(&self, lipschitz: &[f64]) -> f64 {
+        lipschitz[0]
     }
 
     fn extent(&self, extents: &[Extent]) -> Extent {
@@ -124,11 +124,11 @@ impl Rule for Offset {
     }
 }
 
-struct Shell {
+struct Wall {
     half: f64,
 }
 
-impl Rule for Shell {
+impl Rule for Wall {
     fn apply(&self, _: DVec3, values: &[f64], slopes: &mut [f64]) -> Slope {
         slopes[0] = values[0].signum();
         Slope { value: values[0].abs() - self.half, ..Slope::default() }
@@ -138,8 +138,8 @@ impl Rule for Shell {
         ranges[0].abs().rising(|v| v - self.half)
     }
 
-    fn steepness(&self, steepness: &[f64]) -> f64 {
-        steepness[0]
+    fn lipschitz(&self, lipschitz: &[f64]) -> f64 {
+        lipschitz[0]
     }
 
     fn extent(&self, extents: &[Extent]) -> Extent {
@@ -159,8 +159,8 @@ impl Rule for Complement {
         ranges[0].times(-1.0)
     }
 
-    fn steepness(&self, steepness: &[f64]) -> f64 {
-        steepness[0]
+    fn lipschitz(&self, lipschitz: &[f64]) -> f64 {
+        lipschitz[0]
     }
 
     fn extent(&self, _: &[Extent]) -> Extent {
@@ -192,8 +192,8 @@ impl Rule for Pick {
         ranges.iter().copied().reduce(both).unwrap_or(Range::ALL)
     }
 
-    fn steepness(&self, steepness: &[f64]) -> f64 {
-        steepness.iter().copied().fold(0.0, f64::max)
+    fn lipschitz(&self, lipschitz: &[f64]) -> f64 {
+        lipschitz.iter().copied().fold(0.0, f64::max)
     }
 
     fn extent(&self, extents: &[Extent]) -> Extent {
@@ -232,8 +232,8 @@ impl Rule for Odd {
         ranges.iter().copied().reduce(both).unwrap_or(Range::ALL)
     }
 
-    fn steepness(&self, steepness: &[f64]) -> f64 {
-        steepness.iter().copied().fold(0.0, f64::max)
+    fn lipschitz(&self, lipschitz: &[f64]) -> f64 {
+        lipschitz.iter().copied().fold(0.0, f64::max)
     }
 
     fn extent(&self, extents: &[Extent]) -> Extent {
@@ -263,8 +263,8 @@ impl Rule for Weighted {
         counting.map(|(range, &weight)| range.times(weight)).reduce(Range::plus).unwrap_or(Range::ALL)
     }
 
-    fn steepness(&self, steepness: &[f64]) -> f64 {
-        let counting = steepness.iter().zip(&self.weights).filter(|(_, weight)| **weight != 0.0);
+    fn lipschitz(&self, lipschitz: &[f64]) -> f64 {
+        let counting = lipschitz.iter().zip(&self.weights).filter(|(_, weight)| **weight != 0.0);
         counting.map(|(steep, weight)| steep * weight.abs()).sum()
     }
 
@@ -305,7 +305,7 @@ impl Rule for Ramp {
         at(-1.0).or(at(1.0))
     }
 
-    fn steepness(&self, _: &[f64]) -> f64 {
+    fn lipschitz(&self, _: &[f64]) -> f64 {
         // What lies between two values grows with their difference, which has no bound.
         f64::INFINITY
     }

@@ -19,17 +19,17 @@ const HEIGHT: f64 = 0.25;
 /// How steep the displacement is at most, over its height and with the radius 1: where r² = 1/3 of 4 r (1 − r²).
 const STEEPEST: f64 = 1.54;
 
-/// What is in one of two fields, with the seam filled within `radius`, model units, more than 0.
+/// The union of two fields, with the seam filled within `radius`, model units, more than 0.
 pub fn blend_union(a: Shared, b: Shared, radius: f64) -> Shared {
     Arc::new(Combined::new(vec![a, b], Blend { radius, sign: 1.0 }))
 }
 
-/// What is in both fields, with the seam rounded off within `radius`, model units, more than 0.
+/// The intersection of two fields, with the seam rounded off within `radius`, model units, more than 0.
 pub fn blend_intersection(a: Shared, b: Shared, radius: f64) -> Shared {
     Arc::new(Combined::new(vec![a, b], Blend { radius, sign: -1.0 }))
 }
 
-/// What is in the first field only, with the seam rounded off within `radius`, model units, more than 0.
+/// The difference of two fields, with the seam rounded off within `radius`, model units, more than 0.
 pub fn blend_difference(a: Shared, b: Shared, radius: f64) -> Shared {
     blend_intersection(a, complement(b), radius)
 }
@@ -77,9 +77,9 @@ impl Rule for Blend {
         range.times(self.sign)
     }
 
-    fn steepness(&self, steepness: &[f64]) -> f64 {
+    fn lipschitz(&self, lipschitz: &[f64]) -> f64 {
         // The gradient of the R-function by its two values is (1 − cos, 1 − sin) of an angle.
-        (1.0 + std::f64::consts::SQRT_2 + STEEPEST * HEIGHT) * steepness[0].hypot(steepness[1])
+        (1.0 + std::f64::consts::SQRT_2 + STEEPEST * HEIGHT) * lipschitz[0].hypot(lipschitz[1])
     }
 
     fn extent(&self, extents: &[Extent]) -> Extent {

@@ -47,13 +47,13 @@ pub fn blob(field: Shared, options: BlobOptions) -> Shared {
     join(vec![field], options, Join::Sum)
 }
 
-/// What is probably in one of the shapes: the sum of the blobs ("Surface blending", "Boolean operations"). Where two
+/// The union of fuzzy shapes, what is probably in one of them: the sum of the blobs ("Surface blending", "Boolean operations"). Where two
 /// come near each other they join.
 pub fn blob_union(fields: Vec<Shared>, options: BlobOptions) -> Shared {
     join(fields, options, Join::Sum)
 }
 
-/// What is probably in all of the shapes: the product of the blobs.
+/// The intersection of fuzzy shapes, what is probably in all of them: the product of the blobs.
 pub fn blob_intersection(fields: Vec<Shared>, options: BlobOptions) -> Shared {
     join(fields, options, Join::Product)
 }
@@ -128,12 +128,12 @@ impl Rule for Joined {
         Range::of([end(false), end(true)])
     }
 
-    fn steepness(&self, steepness: &[f64]) -> f64 {
+    fn lipschitz(&self, lipschitz: &[f64]) -> f64 {
         // With less gain the blob is steep, without a bound, at its ends; with more at the surface.
         let exponent = self.options.exponent();
         let steepest = if exponent >= 1.0 { exponent } else { f64::INFINITY };
         let per_value = if self.join == Join::Compare { 1.0 / (2.0 * self.options.radius) } else { 1.0 };
-        steepness.iter().map(|steep| steep * steepest * per_value).sum()
+        lipschitz.iter().map(|steep| steep * steepest * per_value).sum()
     }
 
     fn extent(&self, extents: &[Extent]) -> Extent {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Ball, Extent, Facet, Field, Range, Sample, Shared};
+use super::{Ball, Extent, Field, Range, Sample, Shared, SourceTriangle};
 
 /// What a [`Rule`] makes of values.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -22,7 +22,7 @@ pub trait Rule: Send + Sync {
     fn range(&self, ball: &Ball, ranges: &[Range]) -> Range;
 
     /// How steep the value is at most, where the fields are as steep as this.
-    fn steepness(&self, steepness: &[f64]) -> f64;
+    fn lipschitz(&self, lipschitz: &[f64]) -> f64;
 
     /// Where the value may be zero or less.
     fn extent(&self, extents: &[Extent]) -> Extent;
@@ -40,7 +40,7 @@ pub struct Combined<R> {
 }
 
 impl<R: Rule> Combined<R> {
-    /// `fields` under `rule`.
+    /// The field that `rule` makes of the values of `fields`.
     pub fn new(fields: Vec<Shared>, rule: R) -> Self {
         Self { fields, rule }
     }
@@ -77,9 +77,9 @@ impl<R: Rule> Field for Combined<R> {
         self.rule.range(ball, &ranges)
     }
 
-    fn steepness(&self) -> f64 {
-        let steepness: Vec<f64> = self.fields.iter().map(|field| field.steepness()).collect();
-        self.rule.steepness(&steepness)
+    fn lipschitz(&self) -> f64 {
+        let lipschitz: Vec<f64> = self.fields.iter().map(|field| field.lipschitz()).collect();
+        self.rule.lipschitz(&lipschitz)
     }
 
     fn extent(&self) -> Extent {
@@ -87,8 +87,8 @@ impl<R: Rule> Field for Combined<R> {
         self.rule.extent(&extents)
     }
 
-    fn facet(&self, p: DVec3, within: f64) -> Option<Facet> {
+    fn source_triangle(&self, p: DVec3, within: f64) -> Option<SourceTriangle> {
         let mut own = self.fields.iter().filter(|_| self.rule.keeps_surfaces());
-        own.find_map(|field| field.facet(p, within)).filter(|_| self.value(p).abs() <= within)
+        own.find_map(|field| field.source_triangle(p, within)).filter(|_| self.value(p).abs() <= within)
     }
 }

@@ -8,9 +8,10 @@ use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use super::{Ball, Field, Range};
-use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot, brick_of, index_in_brick};
+use crate::lattice::{
+    BRICK, BRICK_VOXELS, Bricks, DistanceField, Grid, Lattice, Slot, brick_of, index_in_brick, voxel_in_brick,
+};
 use crate::progress::{Progress, Stopped};
-use crate::vote::voxel_in_brick;
 
 /// Bricks along a side of the blocks with which the search begins.
 const FIRST: i32 = 8;
@@ -45,7 +46,7 @@ pub enum FillError {
     },
 }
 
-/// The values of `field`, model units, at the voxels of `lattice`. Values beyond the band are ± the band in stored
+/// The values of `field` at the voxels of `lattice`, in model units. Values beyond the band are ± the band in stored
 /// bricks, and the bricks without any other value are not stored but have their side. Blocks of voxels are halved until
 /// the field's range says that none of their values is in the band, so that time and memory follow the surface.
 ///
@@ -56,7 +57,7 @@ pub fn fill(
     lattice: &Lattice,
     options: &FillOptions,
     progress: &Progress,
-) -> Result<Grid<f32>, FillError> {
+) -> Result<DistanceField, FillError> {
     let scope = Scope { field, lattice, band: options.band.unwrap_or(f64::INFINITY), progress };
     let found = scope.bricks()?;
     let needed = found.active.len() as u64 * BRICK_BYTES;
@@ -76,7 +77,7 @@ pub fn fill(
     });
     let values = values.collect::<Result<Vec<_>, Stopped>>()?;
     let far = if scope.band.is_finite() { scope.band as f32 } else { f32::INFINITY };
-    Ok(Grid { bricks, values, inside: -far, outside: far })
+    Ok(DistanceField::in_model_units(*lattice, Grid { bricks, values, inside: -far, outside: far }))
 }
 
 /// The values are about this share of what a stage does with them, and it is told after so many bricks.
@@ -189,8 +190,8 @@ impl Found {
 }
 
 /// Whether a voxel on the border of the lattice is inside: what lies beyond it is cut off.
-pub(super) fn touches_border(grid: &Grid<f32>, dims: IVec3) -> bool {
-    let last = dims - 1;
+pub(super) fn touches_border(field: &DistanceField) -> bool {
+    let (grid, last) = (&field.grid, field.lattice.dims - 1);
     let on_border = |voxel: IVec3| voxel.cmpeq(IVec3::ZERO).any() || voxel.cmpeq(last).any();
     let bricks = IVec3::ZERO;
     let end = brick_of(last);

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::fill::touches_border;
 use super::passages::Passages;
-use super::{Facet, Field, FillError, FillOptions, Sample, fill};
-use crate::contour::{Contour, ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
+use super::{Field, FillError, FillOptions, Sample, SourceTriangle, fill};
+use crate::contour::{Contour, ContourOptions, Crossing, Edge, Ground, contour};
 use crate::lattice::Lattice;
 use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
@@ -23,12 +23,12 @@ const ON_SOURCE: f64 = 1e-5;
 
 /// The zero level of a field.
 pub struct Level {
-    /// The surface; each vertex's `triangle` is its own number.
+    /// The surface; each vertex lies on the plane with its own number.
     pub contour: Contour,
     /// For each vertex of the contour the tangent plane, model units, normal outwards.
     pub planes: Vec<Plane>,
     /// For each vertex of the contour the triangle that the level lies on there.
-    pub facets: Vec<Option<Facet>>,
+    pub sources: Vec<Option<SourceTriangle>>,
     /// Whether the level goes on beyond the lattice, where it was cut off.
     pub cut_off: bool,
 }
@@ -56,24 +56,21 @@ pub fn level(
     progress: &Progress,
 ) -> Result<Level, LevelError> {
     let options = FillOptions { band: Some(BAND * lattice.h), max_memory };
-    let mut grid = fill(field, lattice, &options, progress)?;
-    let cut_off = touches_border(&grid, lattice.dims);
-    // The contour takes distances in h.
-    grid.values.par_iter_mut().flatten().for_each(|value| *value /= lattice.h as f32);
-    (grid.inside, grid.outside) = (grid.inside / lattice.h as f32, grid.outside / lattice.h as f32);
-    let passages = Passages::of(field, &grid, lattice, progress)?;
+    let values = fill(field, lattice, &options, progress)?.into_voxels();
+    let cut_off = touches_border(&values);
+    let passages = Passages::of(field, &values, progress)?;
     progress.share(0.8);
-    let crossing = |edge: Edge| Some(Crossing { t: passages.at(edge)?, triangle: NO_TRIANGLE });
-    let mut contour = contour(lattice, &grid, &crossing, &ContourOptions::default(), progress)?;
-    drop(grid);
+    let crossing = |edge: Edge| Some(Crossing { t: passages.at(edge)?, triangle: None });
+    let mut contour = contour(&values, &crossing, &ContourOptions::default(), progress)?;
+    drop(values);
     progress.share(0.9);
     let positions = &contour.mesh.positions;
     let planes: Vec<Plane> = positions.par_chunks(PACKET).flat_map_iter(|points| tangents(field, points)).collect();
     progress.check()?;
-    let facets = positions.par_iter().map(|&p| field.facet(p, ON_SOURCE * lattice.h)).collect();
+    let sources = positions.par_iter().map(|&p| field.source_triangle(p, ON_SOURCE * lattice.h)).collect();
     progress.check()?;
-    contour.vertices.iter_mut().zip(0..).for_each(|(vertex, n)| vertex.triangle = n);
-    Ok(Level { contour, planes, facets, cut_off })
+    contour.vertices.iter_mut().zip(0..).for_each(|(vertex, n)| vertex.ground = Ground::Plane(n));
+    Ok(Level { contour, planes, sources, cut_off })
 }
 
 /// The planes through the points of the level nearest to `points`, by one step along the gradient; without a normal where

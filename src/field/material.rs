@@ -35,7 +35,7 @@ impl Rule for Transfinite {
         Range::of(self.values.iter().copied())
     }
 
-    fn steepness(&self, _: &[f64]) -> f64 {
+    fn lipschitz(&self, _: &[f64]) -> f64 {
         f64::INFINITY
     }
 

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 
-use super::{Ball, Extent, Facet, Field, Range, Sample};
+use super::{Ball, Extent, Field, Range, Sample, SourceTriangle};
 use crate::mesh::{Bounds, TriMesh};
 use crate::sdf::exact::{ExactDistance, Nearest, PointSign};
 
@@ -49,7 +49,7 @@ impl Field for MeshField {
         Range::around(self.value(ball.centre), ball.radius)
     }
 
-    fn steepness(&self) -> f64 {
+    fn lipschitz(&self) -> f64 {
         1.0
     }
 
@@ -57,8 +57,8 @@ impl Field for MeshField {
         Extent::of(self.bounds)
     }
 
-    fn facet(&self, p: DVec3, within: f64) -> Option<Facet> {
+    fn source_triangle(&self, p: DVec3, within: f64) -> Option<SourceTriangle> {
         let nearest = self.distance.within(p, within)?;
-        Some(Facet { source: self.source, triangle: nearest.triangle })
+        Some(SourceTriangle { source: self.source, triangle: nearest.triangle })
     }
 }

@@ -48,7 +48,7 @@ pub use mesh::MeshField;
 pub use placed::{Placement, placed};
 pub use points::{PointField, scattered};
 pub use range::{Ball, Extent, Range};
-pub use sampled::{Sampled, blur_band, blurred, dense};
+pub use sampled::{Sampled, blur_band, blurred};
 pub use solids::{Body, Solid};
 
 /// A field that others can be made of.
@@ -65,7 +65,7 @@ pub struct Sample {
 
 /// A triangle of a mesh that a field was made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Facet {
+pub struct SourceTriangle {
     /// Number of the mesh: see [`MeshField::new`].
     pub source: u32,
     /// Triangle of that mesh.
@@ -84,15 +84,16 @@ pub trait Field: Send + Sync {
     /// Bounds of the values within a ball. They may be wide; the narrower, the less is looked at.
     fn range(&self, ball: &Ball) -> Range;
 
-    /// No two values differ by more than this times the distance of their points; infinite where nothing is known.
-    fn steepness(&self) -> f64;
+    /// A Lipschitz bound: no two values differ by more than this times the distance of their points. It is infinite where
+    /// none is known.
+    fn lipschitz(&self) -> f64;
 
     /// Where values may be zero or less.
     fn extent(&self) -> Extent;
 
     /// The triangle that the zero level lies on at `p` (model units), if it lies on one: not farther than `within`,
     /// model units, and unchanged by what was done to the mesh.
-    fn facet(&self, p: DVec3, within: f64) -> Option<Facet> {
+    fn source_triangle(&self, p: DVec3, within: f64) -> Option<SourceTriangle> {
         let _ = (p, within);
         None
     }

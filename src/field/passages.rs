@@ -5,9 +5,8 @@ use rayon::prelude::*;
 
 use super::Field;
 use crate::contour::Edge;
-use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick};
+use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, DistanceField, Slot, brick_of, index_in_brick, voxel_in_brick};
 use crate::progress::{Progress, Stopped};
-use crate::vote::voxel_in_brick;
 
 /// A point whose value is nearer to zero than this, h, is on the level.
 const AT_LEVEL: f64 = 1e-6;
@@ -18,7 +17,7 @@ const PACKET: usize = 64;
 
 /// The passages of all edges that begin in a stored brick.
 pub(super) struct Passages<'a> {
-    grid: &'a Grid<f32>,
+    bricks: &'a Bricks,
     /// For each stored brick the number of its edges, 3 times the voxel's and the axis, and where on them the field is zero.
     of_bricks: Vec<Vec<(u16, f64)>>,
     /// Those of edges that begin in a brick that is not stored and end in one that is.
@@ -62,19 +61,14 @@ impl Search {
 }
 
 impl<'a> Passages<'a> {
-    /// The passages of `field`, whose values at the voxels of `lattice` are `grid`, in h.
-    pub(super) fn of(
-        field: &dyn Field,
-        grid: &'a Grid<f32>,
-        lattice: &Lattice,
-        progress: &Progress,
-    ) -> Result<Self, Stopped> {
-        let bricks = grid.bricks.active();
+    /// The passages of `field`, whose values at voxels are `values`.
+    pub(super) fn of(field: &dyn Field, values: &'a DistanceField, progress: &Progress) -> Result<Self, Stopped> {
+        let bricks = values.grid.bricks.active();
         let found = bricks.par_iter().map(|&brick| {
             progress.check()?;
-            let edges = edges(grid, lattice, brick);
-            let mut searches: Vec<Search> = edges.iter().map(|edge| search(grid, lattice, edge)).collect();
-            searches.chunks_mut(PACKET).for_each(|packet| pass(field, packet, AT_LEVEL * lattice.h));
+            let edges = edges(values, brick);
+            let mut searches: Vec<Search> = edges.iter().map(|edge| search(values, edge)).collect();
+            searches.chunks_mut(PACKET).for_each(|packet| pass(field, packet, AT_LEVEL * values.lattice.h));
             let place = |s: &Search| s.found.unwrap_or((s.low.0 + s.high.0) / 2.0);
             Ok(edges.into_iter().zip(searches.iter().map(place)).collect::<Vec<_>>())
         });
@@ -87,12 +81,12 @@ impl<'a> Passages<'a> {
             of_bricks.push(own.into_iter().map(|(edge, t)| (number(&edge), t)).collect());
         }
         others.sort_by_key(|(voxel, axis, _)| (voxel.z, voxel.y, voxel.x, *axis));
-        Ok(Self { grid, of_bricks, others })
+        Ok(Self { bricks: &values.grid.bricks, of_bricks, others })
     }
 
     /// Where on `edge` the field is zero: 0 at its lower voxel, 1 at its upper one.
     pub(super) fn at(&self, edge: Edge) -> Option<f64> {
-        if let Slot::Active(n) = self.grid.bricks.slot(brick_of(edge.voxel)) {
+        if let Slot::Active(n) = self.bricks.slot(brick_of(edge.voxel)) {
             let list = &self.of_bricks[n as usize];
             return list.binary_search_by_key(&number(&edge), |(number, _)| *number).ok().map(|at| list[at].1);
         }
@@ -108,7 +102,8 @@ fn number(edge: &Edge) -> u16 {
 }
 
 /// The edges with a passage that begin in a brick, in order, and those that end in it and begin in one that is not stored.
-fn edges(grid: &Grid<f32>, lattice: &Lattice, brick: IVec3) -> Vec<Edge> {
+fn edges(values: &DistanceField, brick: IVec3) -> Vec<Edge> {
+    let DistanceField { lattice, grid, .. } = values;
     let mut edges = Vec::new();
     let inside = |voxel: IVec3| {
         let held = voxel.cmpge(IVec3::ZERO).all() && voxel.cmplt(lattice.dims).all();
@@ -132,10 +127,10 @@ fn edges(grid: &Grid<f32>, lattice: &Lattice, brick: IVec3) -> Vec<Edge> {
     edges
 }
 
-fn search(grid: &Grid<f32>, lattice: &Lattice, edge: &Edge) -> Search {
+fn search(values: &DistanceField, edge: &Edge) -> Search {
     let ends = [edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]];
-    let [low, high] = ends.map(|voxel| f64::from(grid.get(voxel)) * lattice.h);
-    let ends = ends.map(|voxel| lattice.to_model(voxel.as_dvec3()));
+    let [low, high] = ends.map(|voxel| values.length(values.grid.get(voxel)));
+    let ends = ends.map(|voxel| values.lattice.to_model(voxel.as_dvec3()));
     // At the border of the lattice both ends may be inside: there the surface is cut off half-way.
     let found = ((low < 0.0) == (high < 0.0)).then_some(0.5);
     Search { ends, low: (0.0, low), high: (1.0, high), found }

@@ -19,23 +19,23 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Moved only.
+    /// A shift without turning or scaling.
     pub fn moved(shift: DVec3) -> Self {
         Self { turn: DMat3::IDENTITY, scale: 1.0, shift }
     }
 
-    /// Larger about `centre`.
+    /// A scaling by `scale` about `centre`.
     pub fn scaled(scale: f64, centre: DVec3) -> Self {
         Self { turn: DMat3::IDENTITY, scale, shift: centre * (1.0 - scale) }
     }
 
-    /// Turned by `angle`, radians, counterclockwise seen against coordinate axis `axis` through `centre`.
+    /// A turn by `angle`, radians, counterclockwise seen against coordinate axis `axis` through `centre`.
     pub fn turned(axis: usize, angle: f64, centre: DVec3) -> Self {
         let turn = DMat3::from_axis_angle(DVec3::AXES[axis % 3], angle);
         Self { turn, scale: 1.0, shift: centre - turn * centre }
     }
 
-    /// So that the centre and the longest side of the box `from` become those of `to`.
+    /// The scaling and shift by which the centre and the longest side of the box `from` become those of `to`.
     pub fn fitted(from: &Bounds, to: &Bounds) -> Self {
         let scale = to.size().max_element() / from.size().max_element();
         let [from, to] = [from, to].map(|b| (b.min + b.max) / 2.0);
@@ -86,8 +86,8 @@ impl Field for Placed {
         self.field.range(&Ball { centre, radius }).times(self.placement.scale)
     }
 
-    fn steepness(&self) -> f64 {
-        self.field.steepness()
+    fn lipschitz(&self) -> f64 {
+        self.field.lipschitz()
     }
 
     fn extent(&self) -> Extent {

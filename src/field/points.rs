@@ -49,7 +49,7 @@ impl Field for PointField {
         Range { min: range.min.max(0.0), ..range }
     }
 
-    fn steepness(&self) -> f64 {
+    fn lipschitz(&self) -> f64 {
         1.0
     }
 

@@ -7,18 +7,18 @@ use crate::mesh::Bounds;
 /// A ball in which a field is bounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
-    /// Its centre, model units.
+    /// The centre of the ball, model units.
     pub centre: DVec3,
-    /// Its radius, model units.
+    /// The radius of the ball, model units.
     pub radius: f64,
 }
 
 /// All values from the least to the most.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// The least.
+    /// The least value.
     pub min: f64,
-    /// The most.
+    /// The greatest value.
     pub max: f64,
 }
 
@@ -37,12 +37,12 @@ impl Range {
         values.into_iter().fold(none, |range, v| Self { min: range.min.min(v), max: range.max.max(v) })
     }
 
-    /// What both have.
+    /// The values that both ranges have.
     pub fn and(self, other: Self) -> Self {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
     }
 
-    /// The least range with both.
+    /// The least range that has the values of both.
     pub fn or(self, other: Self) -> Self {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
@@ -73,11 +73,11 @@ impl Range {
 /// Where a field may be zero or less.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Extent {
-    /// Nowhere.
+    /// The field is positive everywhere.
     Empty,
-    /// Nowhere but in this box, model units.
+    /// The field is positive outside of this box, model units.
     Within(Bounds),
-    /// Without an end.
+    /// Nothing bounds where the field may be negative.
     Unbounded,
 }
 
@@ -93,7 +93,7 @@ impl Extent {
         bounds.min.cmple(bounds.max).all().then_some(bounds)
     }
 
-    /// Where one of the two may be.
+    /// Where one of two fields may be zero or less.
     pub fn or(self, other: Self) -> Self {
         match (self, other) {
             (Self::Unbounded, _) | (_, Self::Unbounded) => Self::Unbounded,
@@ -102,7 +102,7 @@ impl Extent {
         }
     }
 
-    /// Where both may be. Boxes apart from each other give one whose least corner is beyond its greatest: it holds nothing,
+    /// Where both of two fields may be zero or less. Boxes apart from each other give one whose least corner is beyond its greatest: it holds nothing,
     /// but grown it may.
     pub fn and(self, other: Self) -> Self {
         match (self, other) {

@@ -7,12 +7,13 @@ use rayon::prelude::*;
 
 use super::{Ball, Extent, Field, Range, Sample};
 use crate::io::{GridFile, GridValues, SparseValues};
-use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Lattice, Slot, brick_of, index_in_brick};
+use crate::lattice::{
+    BRICK, BRICK_VOXELS, Bricks, DistanceField, Grid, Lattice, Slot, brick_of, index_in_brick, voxel_in_brick,
+};
 use crate::mesh::Bounds;
 use crate::progress::{Progress, Stopped};
-use crate::vote::voxel_in_brick;
 
-/// Bricks that a ball may meet, along an axis, for its range to be looked up in each; larger ones are bounded by the steepness.
+/// Bricks that a ball may meet, along an axis, for its range to be looked up in each; larger ones are bounded by the Lipschitz bound.
 const MOST_BRICKS: i32 = 6;
 
 /// Voxels along a side of a brick with those next to it.
@@ -21,27 +22,29 @@ const SIDE: i32 = BRICK + 1;
 /// A field by its values at the voxels of a lattice, interpolated linearly along each axis. Beyond the lattice it is what it
 /// is at the nearest point of it, and grows with the distance from there.
 pub struct Sampled {
-    grid: Grid<f32>,
-    lattice: Lattice,
+    /// Its values, in model units.
+    field: DistanceField,
     /// For each stored brick the range of its values and those next to it.
     ranges: Vec<Range>,
     all: Range,
-    steepness: f64,
+    lipschitz: f64,
     extent: Extent,
 }
 
 impl Sampled {
-    /// The field with these values, model units, at the voxels of `lattice`.
-    pub fn new(grid: Grid<f32>, lattice: Lattice) -> Self {
-        let mut sampled =
-            Self { ranges: Vec::new(), all: Range::ALL, steepness: 0.0, extent: Extent::Empty, grid, lattice };
+    /// The field that has these values at the voxels of their lattice.
+    pub fn new(field: DistanceField) -> Self {
+        let field = field.into_model_units();
+        let mut sampled = Self { ranges: Vec::new(), all: Range::ALL, lipschitz: 0.0, extent: Extent::Empty, field };
         let parts: Vec<(Range, f32, Option<Bounds>)> =
-            sampled.grid.bricks.active().par_iter().map(|&brick| sampled.describe(brick)).collect();
+            sampled.field.grid.bricks.active().par_iter().map(|&brick| sampled.describe(brick)).collect();
         let far = |values: &[f32]| Range::of(values.iter().filter(|v| v.is_finite()).map(|&v| f64::from(v)));
-        sampled.all = parts.iter().fold(far(&[sampled.grid.inside, sampled.grid.outside]), |all, part| all.or(part.0));
+        sampled.all = parts
+            .iter()
+            .fold(far(&[sampled.field.grid.inside, sampled.field.grid.outside]), |all, part| all.or(part.0));
         // Along each axis the interpolated field is as steep as the steepest pair of voxels; beyond the lattice it rises by 1 besides.
         let steepest = parts.iter().fold(0.0, |most, part| f32::max(most, part.1));
-        sampled.steepness = (f64::from(steepest) / sampled.lattice.h * 3f64.sqrt()).hypot(1.0);
+        sampled.lipschitz = (f64::from(steepest) / sampled.field.lattice.h * 3f64.sqrt()).hypot(1.0);
         let boxes = parts.iter().filter_map(|part| part.2).reduce(|a, b| a.union(&b));
         sampled.extent = Extent::of(boxes);
         sampled.ranges = parts.into_iter().map(|part| part.0).collect();
@@ -50,16 +53,15 @@ impl Sampled {
 
     /// The field of a file, all its lengths times `factor`.
     pub fn of_file(file: &GridFile, factor: f64) -> Self {
-        let dims = IVec3::from(file.dims.map(|count| count as i32));
-        let lattice = Lattice { origin: file.origin * factor, h: file.spacing * factor, dims };
-        let scaled = |value: f32| (f64::from(value) * factor) as f32;
-        let mut grid = match &file.values {
-            GridValues::Dense(values) => dense(values, dims),
+        let lattice = file.lattice();
+        let lattice = Lattice { origin: lattice.origin * factor, h: lattice.h * factor, ..lattice };
+        let grid = match &file.values {
+            GridValues::Dense(values) => dense(values, lattice.dims),
             GridValues::Sparse(values) => sparse(values),
         };
-        grid.values.par_iter_mut().flatten().for_each(|value| *value = scaled(*value));
-        (grid.inside, grid.outside) = (scaled(grid.inside), scaled(grid.outside));
-        Self::new(grid, lattice)
+        let mut field = DistanceField::in_model_units(lattice, grid);
+        field.change(|value| (f64::from(value) * factor) as f32);
+        Self::new(field)
     }
 
     /// Bytes of memory that the field of a file takes, beside the file's own values.
@@ -73,29 +75,24 @@ impl Sampled {
         bricks.saturating_mul(Self::BYTES_OF_BRICK)
     }
 
-    /// Bytes of memory that it takes.
+    /// Bytes of memory that the field takes.
     pub fn memory(&self) -> u64 {
-        self.grid.bricks.len() as u64 * Self::BYTES_OF_BRICK
+        self.field.grid.bricks.len() as u64 * Self::BYTES_OF_BRICK
     }
 
     /// Of a brick: its values, its range, its place in the table and twice in lists.
     const BYTES_OF_BRICK: u64 = (size_of::<[f32; BRICK_VOXELS]>() + size_of::<Range>() + 64) as u64;
 
-    /// The lattice.
-    pub fn lattice(&self) -> &Lattice {
-        &self.lattice
-    }
-
-    /// The values.
-    pub fn grid(&self) -> &Grid<f32> {
-        &self.grid
+    /// The values, in model units.
+    pub fn values(&self) -> &DistanceField {
+        &self.field
     }
 
     /// The range of a brick with the voxels beyond its upper sides, its steepest step, and where it is not positive.
     fn describe(&self, brick: IVec3) -> (Range, f32, Option<Bounds>) {
         let (mut range, mut steepest) = (Range::of([]), 0.0f32);
         let (mut low, mut high) = (IVec3::MAX, IVec3::MIN);
-        let last = (self.lattice.dims - 1 - BRICK * brick).min(IVec3::splat(BRICK));
+        let last = (self.field.lattice.dims - 1 - BRICK * brick).min(IVec3::splat(BRICK));
         let values = self.with_neighbours(brick);
         let value = |at: IVec3| values[(at.x + SIDE * (at.y + SIDE * at.z)) as usize];
         for n in 0..SIDE.pow(3) {
@@ -112,47 +109,38 @@ impl Sampled {
                 steepest = steepest.max((value(at + IVec3::AXES[axis]) - own).abs());
             }
         }
-        let model = |voxel: IVec3| self.lattice.to_model(voxel.as_dvec3());
+        let model = |voxel: IVec3| self.field.lattice.to_model(voxel.as_dvec3());
         (range, steepest, low.cmple(high).all().then(|| Bounds { min: model(low - 1), max: model(high + 1) }))
     }
 
     /// The values of a brick and of the voxels beyond its upper sides.
     fn with_neighbours(&self, brick: IVec3) -> Vec<f32> {
-        let slots: [Slot; 8] =
-            std::array::from_fn(|k| self.grid.bricks.slot(brick + (IVec3::splat(k as i32) >> IVec3::new(0, 1, 2) & 1)));
+        let slots: [Slot; 8] = std::array::from_fn(|k| {
+            self.field.grid.bricks.slot(brick + (IVec3::splat(k as i32) >> IVec3::new(0, 1, 2) & 1))
+        });
         let value = |n: i32| {
             let at = IVec3::new(n % SIDE, n / SIDE % SIDE, n / SIDE.pow(2));
             let [x, y, z] = (at / BRICK).to_array();
             match slots[(x + 2 * y + 4 * z) as usize] {
-                Slot::Active(n) => self.grid.values[n as usize][index_in_brick(at)],
-                Slot::Inside => self.grid.inside,
-                Slot::Outside => self.grid.outside,
+                Slot::Active(n) => self.field.grid.values[n as usize][index_in_brick(at)],
+                Slot::Inside => self.field.grid.inside,
+                Slot::Outside => self.field.grid.outside,
             }
         };
         (0..SIDE.pow(3)).map(value).collect()
     }
 
     fn at(&self, p: DVec3) -> Sample {
-        let h = self.lattice.h;
-        let own = self.lattice.to_lattice(p);
-        let held = own.clamp(DVec3::ZERO, (self.lattice.dims - 1).as_dvec3());
-        let first = held.floor().as_ivec3().min(self.lattice.dims - 2).max(IVec3::ZERO);
-        let part = held - first.as_dvec3();
-        let corner = |k: i32| f64::from(self.grid.get(first + IVec3::new(k & 1, k >> 1 & 1, k >> 2)));
-        let c: [f64; 8] = std::array::from_fn(|k| corner(k as i32));
-        let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
-        let x = [0, 2, 4, 6].map(|k| mix(c[k], c[k + 1], part.x));
-        let y = [mix(x[0], x[1], part.y), mix(x[2], x[3], part.y)];
-        let along_x = [0, 2, 4, 6].map(|k| c[k + 1] - c[k]);
-        let gx = mix(mix(along_x[0], along_x[1], part.y), mix(along_x[2], along_x[3], part.y), part.z);
-        let gradient = DVec3::new(gx, mix(x[1] - x[0], x[3] - x[2], part.z), y[1] - y[0]) / h;
-        let beyond = own - held;
-        let inside = Sample { value: mix(y[0], y[1], part.z), gradient };
+        let DistanceField { lattice, grid, .. } = &self.field;
+        let own = lattice.to_lattice(p);
+        let within = lattice.interpolate(own, |voxel| f64::from(grid.get(voxel)));
+        let inside = Sample { value: within.value, gradient: within.slope / lattice.h };
+        let beyond = own - lattice.nearest(own);
         if beyond == DVec3::ZERO {
             return inside;
         }
-        let within = DVec3::select(beyond.cmpeq(DVec3::ZERO), gradient, DVec3::ZERO);
-        Sample { value: inside.value + beyond.length() * h, gradient: within + beyond.normalize() }
+        let along = DVec3::select(beyond.cmpeq(DVec3::ZERO), inside.gradient, DVec3::ZERO);
+        Sample { value: inside.value + beyond.length() * lattice.h, gradient: along + beyond.normalize() }
     }
 }
 
@@ -166,14 +154,14 @@ impl Field for Sampled {
     }
 
     fn range(&self, ball: &Ball) -> Range {
-        let by_steepness = Range::around(self.at(ball.centre).value, self.steepness * ball.radius);
+        let by_bound = Range::around(self.at(ball.centre).value, self.lipschitz * ball.radius);
         let reach = DVec3::splat(ball.radius);
-        let [low, high] = [ball.centre - reach, ball.centre + reach].map(|p| self.lattice.to_lattice(p));
-        let last = (self.lattice.dims - 1).as_dvec3();
+        let [low, high] = [ball.centre - reach, ball.centre + reach].map(|p| self.field.lattice.to_lattice(p));
+        let last = (self.field.lattice.dims - 1).as_dvec3();
         let whole = low.cmpge(DVec3::ZERO).all() && high.cmple(last).all();
         let (low, high) = (brick_of(low.floor().as_ivec3()), brick_of(high.floor().as_ivec3()));
         if !whole || (high - low).max_element() >= MOST_BRICKS {
-            return by_steepness.and(if whole { self.all } else { Range { max: f64::INFINITY, ..self.all } });
+            return by_bound.and(if whole { self.all } else { Range { max: f64::INFINITY, ..self.all } });
         }
         let mut range = Range::of([]);
         for z in low.z..=high.z {
@@ -183,11 +171,11 @@ impl Field for Sampled {
                 }
             }
         }
-        by_steepness.and(range)
+        by_bound.and(range)
     }
 
-    fn steepness(&self) -> f64 {
-        self.steepness
+    fn lipschitz(&self) -> f64 {
+        self.lipschitz
     }
 
     fn extent(&self) -> Extent {
@@ -198,7 +186,7 @@ impl Field for Sampled {
 impl Sampled {
     /// The range of the values between the voxels of a brick and the next ones.
     fn of_brick(&self, brick: IVec3) -> Range {
-        match self.grid.bricks.slot(brick) {
+        match self.field.grid.bricks.slot(brick) {
             Slot::Active(n) => self.ranges[n as usize],
             // Its upper neighbours may be stored; neighbouring values are on the same side.
             Slot::Inside => Range { min: self.all.min, max: 0.0 },
@@ -215,12 +203,12 @@ pub fn blur_band(sigma: f64) -> f64 {
     2.0 * REACH * sigma
 }
 
-/// The values of `grid` over `lattice` under a Gaussian of standard deviation `sigma`, model units (Payne and Toga 1992,
+/// The values of `field` under a Gaussian of standard deviation `sigma`, model units (Payne and Toga 1992,
 /// "Surface blurring and compression"), one axis after the other, in the stored bricks. With values up to
 /// [`blur_band`] from the surface the zero level is that of the whole field blurred.
-pub fn blurred(grid: &Grid<f32>, lattice: &Lattice, sigma: f64, progress: &Progress) -> Result<Grid<f32>, Stopped> {
-    let weights = gaussian(sigma / lattice.h);
-    let mut blurred = grid.clone();
+pub fn blurred(field: &DistanceField, sigma: f64, progress: &Progress) -> Result<DistanceField, Stopped> {
+    let weights = gaussian(sigma / field.lattice.h);
+    let mut blurred = field.grid.clone();
     for axis in 0..3 {
         let from = blurred;
         let values = from.bricks.active().par_iter().map(|&brick| {
@@ -230,7 +218,7 @@ pub fn blurred(grid: &Grid<f32>, lattice: &Lattice, sigma: f64, progress: &Progr
         let values = values.collect::<Result<Vec<_>, Stopped>>()?;
         blurred = Grid { bricks: from.bricks, values, inside: from.inside, outside: from.outside };
     }
-    Ok(blurred)
+    Ok(DistanceField { grid: blurred, ..*field })
 }
 
 /// The weights of the voxels from −n to n, which add up to 1.
@@ -284,7 +272,7 @@ fn sparse(values: &SparseValues) -> Grid<f32> {
 }
 
 /// A grid from the values of all voxels of a lattice, x fastest, then y.
-pub fn dense(values: &[f32], dims: IVec3) -> Grid<f32> {
+fn dense(values: &[f32], dims: IVec3) -> Grid<f32> {
     let ends = (dims + BRICK - 1) / BRICK;
     let brick = |n: i32| IVec3::new(n % ends.x, n / ends.x % ends.y, n / ends.x / ends.y);
     let bricks = Bricks::new((0..ends.element_product()).map(brick));

@@ -39,11 +39,11 @@ pub enum Solid {
 /// A body where it stands: its exact distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
-    /// Its shape.
+    /// The shape of the body.
     pub solid: Solid,
-    /// Its centre, model units.
+    /// Where the centre of the body is, model units.
     pub centre: DVec3,
-    /// Which coordinate its own z is: 0, 1, 2 for x, y, z.
+    /// The coordinate axis along which the z-axis of the shape lies: 0, 1 or 2 for x, y or z.
     pub axis: usize,
 }
 
@@ -128,7 +128,7 @@ impl Field for Body {
         Range::around(self.at(ball.centre).value, ball.radius)
     }
 
-    fn steepness(&self) -> f64 {
+    fn lipschitz(&self) -> f64 {
         1.0
     }
 

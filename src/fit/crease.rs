@@ -10,9 +10,6 @@ use crate::mesh::least_squares::least_squares;
 /// Planes that turn by less (cosine, 3°) are no crease.
 pub(super) const FLAT: f64 = 0.9986;
 
-/// Planes that turn by less (cosine, 20°) belong to one smooth piece.
-pub(super) const SMOOTH: f64 = 0.94;
-
 /// How far a point may lie beyond the ends of its facets, h, and still count as being on the source.
 const BEYOND: f64 = 0.05;
 
@@ -24,7 +21,7 @@ const CUT: f64 = 1e-4;
 
 /// A vertex: where it is and the facets it lies on.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct Spot {
     pub at: DVec3,
     pub sides: Sides,
 }
@@ -33,7 +30,7 @@ pub(super) struct Place {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Crease {
     /// The point and the facets that meet there.
-    pub place: Place,
+    pub spot: Spot,
     /// Its distance from the edge that cuts it off, model units.
     pub sag: f64,
     /// Whether it lies on all its facets, and not only on their planes.
@@ -45,7 +42,7 @@ pub(super) struct Crease {
 /// The crease that the edge between `x` and `y` cuts off; `None` when their facets are one smooth
 /// piece, or nothing is known. Of several creases it is the one over which the way from `x` to `y` is the
 /// shortest, and one that lies on its facets before one that does not. `h` in model units.
-pub(super) fn crease(facets: &Facets<'_>, h: f64, x: &Place, y: &Place) -> Option<Crease> {
+pub(super) fn crease(facets: &Facets<'_>, h: f64, x: &Spot, y: &Spot) -> Option<Crease> {
     let normal = |side: Side| facets.plane(side).normal;
     let pairs = || x.sides.iter().flat_map(|p| y.sides.iter().map(move |q| (p, q)));
     let cosine = pairs().map(|(p, q)| normal(p).dot(normal(q))).max_by(f64::total_cmp)?;
@@ -53,9 +50,9 @@ pub(super) fn crease(facets: &Facets<'_>, h: f64, x: &Place, y: &Place) -> Optio
         return None;
     }
     let found = pairs().filter_map(|(p, q)| between(facets, h, (x.at, p), (y.at, q)));
-    let way = |c: &Crease| c.place.at.distance(x.at) + c.place.at.distance(y.at);
+    let way = |c: &Crease| c.spot.at.distance(x.at) + c.spot.at.distance(y.at);
     let best = found.min_by(|a, b| b.on_source.cmp(&a.on_source).then(way(a).total_cmp(&way(b))))?;
-    facets.is_wanted(best.place.at, h).then_some(Crease { cosine, ..best })
+    facets.is_on_target(best.spot.at, h).then_some(Crease { cosine, ..best })
 }
 
 /// The crease between the smooth pieces of two facets.
@@ -84,8 +81,8 @@ fn between(facets: &Facets<'_>, h: f64, (x, p): (DVec3, Side), (y, q): (DVec3, S
     let edge = y - x;
     let along = ((at - x).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
     let sag = at.distance(x + edge * along);
-    let place = Place { at, sides: Sides::of([p, q]) };
-    at.is_finite().then_some(Crease { place, sag, on_source: beyond <= BEYOND * h, cosine })
+    let spot = Spot { at, sides: Sides::of([p, q]) };
+    at.is_finite().then_some(Crease { spot, sag, on_source: beyond <= BEYOND * h, cosine })
 }
 
 /// Where the straight way over two planes from `x`, on `p`, to `y`, on `q`, crosses their line.

@@ -9,9 +9,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::crease::{Crease, FLAT, Place, crease, nearest};
+use super::crease::{Crease, FLAT, Spot, crease, nearest};
 use super::facets::{Facets, Sides};
-use super::surface::{NOT_KEPT, Surface, faces_out, rounded, shape};
+use super::surface::{OfSource, Surface, faces_out, rounded, shape};
 
 /// A corner nearer to a point of a crease than this, h, is that point.
 const SAME: f64 = 0.02;
@@ -51,9 +51,9 @@ pub(super) struct Spared {
 const INSET: f64 = 0.02;
 
 /// A place on a crease, moved a little into the solid.
-pub(super) fn inset(place: Place, facets: &Facets<'_>, h: f64) -> Place {
-    let outward: DVec3 = place.sides.iter().map(|s| facets.plane(s).normal).sum();
-    Place { at: place.at - outward.normalize_or_zero() * (INSET * h), ..place }
+pub(super) fn inset(spot: Spot, facets: &Facets<'_>, h: f64) -> Spot {
+    let outward: DVec3 = spot.sides.iter().map(|s| facets.plane(s).normal).sum();
+    Spot { at: spot.at - outward.normalize_or_zero() * (INSET * h), ..spot }
 }
 
 /// Cuts `surface` at the points given for some of its edges (smaller vertex first), then the edges that this
@@ -69,7 +69,7 @@ pub(super) fn cut(
     let first = surface.mesh.positions.len() as u32;
     let mut cut = Cut::of(surface);
     let within = |&(edge, crease): &([u32; 2], Crease)| match spared.inset_edges.contains(&edge) {
-        true => (edge, Crease { place: inset(crease.place, facets, h), ..crease }),
+        true => (edge, Crease { spot: inset(crease.spot, facets, h), ..crease }),
         false => (edge, crease),
     };
     match spared.inset.is_empty() {
@@ -113,25 +113,25 @@ fn second_points(
     // An edge is there once for each of its triangles.
     let pairs: Vec<&[([u32; 2], bool, bool)]> = edges.chunk_by(|a, b| a.0 == b.0).collect();
     let free = pairs.into_par_iter().filter(|pair| pair.iter().all(|(_, spared, _)| !spared));
-    let place = |v: u32| cut.surface.place(v);
+    let spot = |v: u32| cut.surface.spot(v);
     let found = free.filter_map(|pair| {
         let edge = pair[0].0;
-        let found = crease(facets, h, &place(edge[0]), &place(edge[1])).filter(&wanted)?;
+        let found = crease(facets, h, &spot(edge[0]), &spot(edge[1])).filter(&wanted)?;
         let within = pair.iter().any(|(.., inset)| *inset);
-        let place = if within { inset(found.place, facets, h) } else { found.place };
-        Some((edge, Crease { place, ..found }))
+        let spot = if within { inset(found.spot, facets, h) } else { found.spot };
+        Some((edge, Crease { spot, ..found }))
     });
     found.collect()
 }
 
 /// Cuts triangles at points on their edges.
 pub(super) fn subdivide(cut: &mut Cut, points: &[([u32; 2], Crease)]) {
-    let Cut { surface: Surface { mesh, sides, kept, facets }, origin, .. } = cut;
+    let Cut { surface: Surface { mesh, sides, vertices_of, triangles_of }, origin, .. } = cut;
     let first = mesh.positions.len() as u32;
     let ids: FxHashMap<[u32; 2], u32> = points.iter().zip(first..).map(|(&(edge, _), id)| (edge, id)).collect();
-    mesh.positions.extend(points.iter().map(|(_, c)| rounded(c.place.at)));
-    sides.extend(points.iter().map(|(_, c)| c.place.sides));
-    kept.resize(mesh.positions.len(), NOT_KEPT);
+    mesh.positions.extend(points.iter().map(|(_, c)| rounded(c.spot.at)));
+    sides.extend(points.iter().map(|(_, c)| c.spot.sides));
+    vertices_of.resize(mesh.positions.len(), OfSource::NONE);
     let on = |a: u32, b: u32| ids.get(&[a.min(b), a.max(b)]).copied();
     let cuts_of = |&[a, b, c]: &[u32; 3]| {
         let cuts = [on(a, b), on(b, c), on(c, a)];
@@ -141,15 +141,15 @@ pub(super) fn subdivide(cut: &mut Cut, points: &[([u32; 2], Crease)]) {
     let mut triangles = Vec::with_capacity(mesh.triangles.len() + 2 * points.len());
     let mut origins = Vec::with_capacity(triangles.capacity());
     let mut parts_of = Vec::with_capacity(triangles.capacity());
-    for (((&corners, cuts), &id), &facet) in mesh.triangles.iter().zip(cuts).zip(origin.iter()).zip(facets.iter()) {
+    for (((&corners, cuts), &id), &of) in mesh.triangles.iter().zip(cuts).zip(origin.iter()).zip(triangles_of.iter()) {
         match cuts {
             Some(cuts) => split(corners, cuts, &mesh.positions, &mut triangles),
             None => triangles.push(corners),
         }
         origins.resize(triangles.len(), id);
-        parts_of.resize(triangles.len(), facet);
+        parts_of.resize(triangles.len(), of);
     }
-    *facets = parts_of;
+    *triangles_of = parts_of;
     mesh.triangles = triangles;
     *origin = origins;
 }
@@ -157,32 +157,32 @@ pub(super) fn subdivide(cut: &mut Cut, points: &[([u32; 2], Crease)]) {
 /// Puts a vertex into triangles whose corners lie on creases that meet in a corner not yet there.
 fn raise_corners(cut: &mut Cut, facets: &Facets<'_>, h: f64, first: u32, spared: &Spared) {
     let surface = &cut.surface;
-    let found: Vec<(u32, Place)> = (0..surface.mesh.triangles.len() as u32)
+    let found: Vec<(u32, Spot)> = (0..surface.mesh.triangles.len() as u32)
         .into_par_iter()
         .filter(|&t| !surface.is_smooth(facets, t) && !spared.triangles.contains(&cut.origin[t as usize]))
-        .filter_map(|t| Some((t, corner(facets, h, surface.places(t))?)))
+        .filter_map(|t| Some((t, corner(facets, h, surface.spots(t))?)))
         .collect();
-    let mut waiting: FxHashMap<u32, Place> = found.iter().copied().collect();
+    let mut waiting: FxHashMap<u32, Spot> = found.iter().copied().collect();
     let halves = found.iter().flat_map(|&(t, _)| halves(surface.mesh.triangles[t as usize]).map(|half| (half, t)));
     let with_half: FxHashMap<[u32; 2], u32> = halves.collect();
     for (t, _) in found {
-        let Some(place) = waiting.remove(&t) else { continue };
+        let Some(spot) = waiting.remove(&t) else { continue };
         let within = spared.inset.contains(&cut.origin[t as usize]);
-        let place = if within { inset(place, facets, h) } else { place };
-        let place = Place { at: rounded(place.at), ..place };
+        let spot = if within { inset(spot, facets, h) } else { spot };
+        let spot = Spot { at: rounded(spot.at), ..spot };
         let corners = cut.surface.mesh.triangles[t as usize];
-        match corners.into_iter().find(|&v| cut.surface.at(v).distance(place.at) < SAME * h) {
+        match corners.into_iter().find(|&v| cut.surface.at(v).distance(spot.at) < SAME * h) {
             // A point inserted that close is meant to be the corner.
-            Some(v) if v >= first => cut.surface.put(v, place),
+            Some(v) if v >= first => cut.surface.put(v, spot),
             Some(_) => continue,
             None => {
                 let ([a, b, c], z) = (corners, cut.surface.mesh.positions.len() as u32);
                 let next = cut.surface.mesh.triangles.len() as u32;
-                cut.surface.add(place, NOT_KEPT);
+                cut.surface.add(spot, OfSource::NONE);
                 cut.surface.mesh.triangles[t as usize] = [a, b, z];
                 cut.surface.mesh.triangles.extend([[b, c, z], [c, a, z]]);
                 cut.origin.extend([cut.origin[t as usize]; 2]);
-                cut.surface.facets.extend([cut.surface.facets[t as usize]; 2]);
+                cut.surface.triangles_of.extend([cut.surface.triangles_of[t as usize]; 2]);
                 reach_out(cut, facets, h, vec![t, next, next + 1], (&mut waiting, &with_half));
             }
         }
@@ -202,19 +202,19 @@ fn reach_out(
     facets: &Facets<'_>,
     h: f64,
     mut rim: Vec<u32>,
-    (waiting, with_half): (&mut FxHashMap<u32, Place>, &FxHashMap<[u32; 2], u32>),
+    (waiting, with_half): (&mut FxHashMap<u32, Spot>, &FxHashMap<[u32; 2], u32>),
 ) {
     let mut around: Vec<u32> = rim.iter().map(|&n| cut.surface.mesh.triangles[n as usize][0]).collect();
     while let Some(n) = rim.pop() {
         let [x, y, z] = cut.surface.mesh.triangles[n as usize];
         let Some(&t) = with_half.get(&[y, x]) else { continue };
-        let same = |place: &Place| place.at.distance(cut.surface.at(z)) < SAME * h;
+        let same = |spot: &Spot| spot.at.distance(cut.surface.at(z)) < SAME * h;
         if !waiting.get(&t).is_some_and(same) {
             continue;
         }
         let Some(&w) = cut.surface.mesh.triangles[t as usize].iter().find(|v| ![x, y].contains(v)) else { continue };
         let both = [[w, y, z], [x, w, z]];
-        if !around.contains(&w) && both.iter().all(|t| faces_out(facets, &t.map(|v| cut.surface.place(v)))) {
+        if !around.contains(&w) && both.iter().all(|t| faces_out(facets, &t.map(|v| cut.surface.spot(v)))) {
             waiting.remove(&t);
             around.push(w);
             cut.surface.mesh.triangles[t as usize] = both[0];
@@ -226,7 +226,7 @@ fn reach_out(
 }
 
 /// The corner in which the creases through three points meet.
-fn corner(facets: &Facets<'_>, h: f64, three: [Place; 3]) -> Option<Place> {
+fn corner(facets: &Facets<'_>, h: f64, three: [Spot; 3]) -> Option<Spot> {
     let normal = |s| facets.plane(s).normal;
     let mut sides = Sides::default();
     for side in three.iter().flat_map(|p| p.sides.iter()) {
@@ -247,7 +247,7 @@ fn corner(facets: &Facets<'_>, h: f64, three: [Place; 3]) -> Option<Place> {
         at = nearest(sides.iter().map(|s| facets.plane(s)), middle)?;
     }
     let reach = three.iter().map(|p| p.at.distance(at)).fold(0.0, f64::max);
-    (reach < 2.0 * h && facets.is_wanted(at, h) && (beyond < 0.05 * h || reach < h)).then_some(Place { at, sides })
+    (reach < 2.0 * h && facets.is_on_target(at, h) && (beyond < 0.05 * h || reach < h)).then_some(Spot { at, sides })
 }
 
 /// Cuts a triangle at points on some of its edges (corner k to the next).

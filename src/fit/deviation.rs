@@ -156,7 +156,8 @@ fn crossing(to: DVec2, a: DVec2, b: DVec2) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::super::simplify::simplified;
-    use super::super::{Facets, FitOptions, Side, Sides, Surface};
+    use super::super::source::own_sides;
+    use super::super::{Facets, FitOptions, Surface};
     use super::*;
     use crate::mesh::{Plane, TriMesh};
     use crate::progress::Progress;
@@ -203,11 +204,7 @@ mod tests {
     /// The surface that a mesh is when it is its own source, and simplified.
     fn simple(mesh: &TriMesh, tolerance: f64) -> TriMesh {
         let facets = Facets::new(mesh, std::iter::empty::<Plane>());
-        let mut sides = vec![Sides::default(); mesh.positions.len()];
-        for (t, corners) in (0..).zip(&mesh.triangles) {
-            corners.iter().for_each(|&v| sides[v as usize].add(Side::new(t, false)));
-        }
-        let surface = Surface::new(mesh.clone(), sides);
+        let surface = Surface::new(mesh.clone(), own_sides(mesh));
         let options = FitOptions { tolerance, ..FitOptions::default() };
         let off = vec![0.0; mesh.triangles.len()];
         simplified((&surface, &off), &facets, 1.0, &options, &Progress::none())

@@ -3,48 +3,61 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::crease::SMOOTH;
+use crate::contour::Ground;
 use crate::mesh::around::Around;
-use crate::mesh::edges::Edges;
+use crate::mesh::neighbours::Neighbours;
 use crate::mesh::{Plane, TriMesh};
 
-/// No facet.
-const NONE: u32 = u32::MAX;
+/// Planes that turn by less (cosine, 20°) belong to one smooth piece.
+pub(super) const SMOOTH: f64 = 0.94;
 
 /// Most facets that a walk crosses.
 const LONGEST_WALK: usize = 24;
+
+/// The number of a facet: first come the triangles of the source, by their own numbers, then planes without a triangle.
+/// [`Facets`] knows which is which.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct FacetId(u32);
+
+impl FacetId {
+    /// The facet that is the triangle of the source with this number.
+    pub fn of_triangle(triangle: u32) -> Self {
+        Self(triangle)
+    }
+
+    /// Its place among all facets.
+    #[inline]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
 
 /// A facet seen from one of its sides: the one that looks out of the solid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Side(u32);
 
 impl Side {
-    /// No facet at all.
-    pub const NONE: Self = Self(NONE);
-
     /// Facet `facet`, seen against its own normal when `reversed`.
-    pub fn new(facet: u32, reversed: bool) -> Self {
-        Self(facet << 1 | u32::from(reversed))
+    pub fn new(facet: FacetId, reversed: bool) -> Self {
+        Self(facet.0 << 1 | u32::from(reversed))
     }
 
-    /// The number of the facet.
-    pub fn facet(self) -> u32 {
-        self.0 >> 1
+    /// The facet whose side this is.
+    pub fn facet(self) -> FacetId {
+        FacetId(self.0 >> 1)
     }
 
     /// Whether the solid lies on the side of the facet's own normal.
     pub fn reversed(self) -> bool {
         self.0 & 1 == 1
     }
-
-    /// Whether there is a facet.
-    pub fn is_some(self) -> bool {
-        self != Self::NONE
-    }
 }
 
 /// Most facets that a vertex remembers to lie on.
 pub(super) const MOST: usize = 4;
+
+/// Where fewer facets than [`MOST`] are known: the number that no facet has.
+const FREE: Side = Side(u32::MAX);
 
 /// The facets that a vertex lies on: one on a face, several on creases and corners, none where
 /// nothing is known.
@@ -53,93 +66,84 @@ pub struct Sides([Side; MOST]);
 
 impl Default for Sides {
     fn default() -> Self {
-        Self([Side::NONE; MOST])
+        Self([FREE; MOST])
     }
 }
 
 impl Sides {
-    /// The given sides, each once, at most four.
+    /// A list of the given sides, each once; those after the fourth are left out.
     pub fn of(sides: impl IntoIterator<Item = Side>) -> Self {
         let mut all = Self::default();
         sides.into_iter().for_each(|side| all.add(side));
         all
     }
 
-    /// Adds a side unless it is there or four are.
+    /// Adds a side, unless it is in the list or the list is full.
     pub fn add(&mut self, side: Side) {
-        if let Some(free) = self.0.iter_mut().find(|s| !s.is_some() || **s == side) {
+        if let Some(free) = self.0.iter_mut().find(|s| **s == FREE || **s == side) {
             *free = side;
         }
     }
 
-    /// The sides.
+    /// The sides in the list.
     pub fn iter(&self) -> impl Iterator<Item = Side> + Clone + '_ {
-        self.0.iter().copied().take_while(|s| s.is_some())
+        self.0.iter().copied().take_while(|s| *s != FREE)
     }
 
-    /// Whether there is none.
+    /// Whether the list has no side.
     pub fn is_empty(&self) -> bool {
-        !self.0[0].is_some()
+        self.0[0] == FREE
     }
 }
 
-/// Planes with extents. The first ones are the triangles of the source mesh, the others planes without
-/// an end.
+/// What a surface is fitted to: the triangles of the source mesh as planes that end where the triangles do, and after them
+/// planes without an end.
 pub struct Facets<'a> {
     mesh: &'a TriMesh,
     planes: Vec<Plane>,
-    /// The triangle across each edge (corner k to the next) and whether it is turned the other
-    /// way, or [`NONE`].
-    across: Vec<[(u32, bool); 3]>,
+    neighbours: Neighbours,
     /// The triangles around each vertex.
     around: Around,
     /// A number for each triangle, or none: simplification keeps different ones apart.
     classes: Vec<u32>,
     /// How far a point is from the surface that is wanted, model units, where that is known.
-    wanted: Option<Wanted<'a>>,
+    target: Option<TargetDistance<'a>>,
 }
 
-/// How far a point (model units) is from the surface that is wanted, model units.
-pub type Wanted<'a> = &'a (dyn Fn(DVec3) -> f64 + Sync);
+/// The target distance: how far a point (model units) is from the surface that is wanted, in model units.
+pub type TargetDistance<'a> = &'a (dyn Fn(DVec3) -> f64 + Sync);
 
 /// A crease farther than this, h, from the surface that is wanted is none: the planes belong to something round.
 const ASTRAY: f64 = 0.05;
 
 impl<'a> Facets<'a> {
-    /// The triangles of `mesh`, and after them `lids`: planes, model units, of surface that has no
-    /// source.
-    pub fn new(mesh: &'a TriMesh, lids: impl IntoIterator<Item = Plane>) -> Self {
+    /// The facets of a source: the triangles of `mesh`, and after them `planes` (model units) for surface that no triangle is
+    /// the source of.
+    pub fn new(mesh: &'a TriMesh, planes: impl IntoIterator<Item = Plane>) -> Self {
         let count = mesh.triangles.len();
-        let mut planes: Vec<Plane> = (0..count).into_par_iter().map(|t| Plane::through(mesh.corners(t))).collect();
-        planes.extend(lids);
-        let mut across = vec![[(NONE, false); 3]; count];
-        let edges = Edges::new(&mesh.triangles, mesh.positions.len());
-        edges.each(|edge| {
-            let mut halves = edge.halves();
-            let (2, Some(a), Some(b)) = (edge.count(), halves.next(), halves.next()) else { return };
-            let start = |h: u32| mesh.triangles[h as usize / 3][h as usize % 3];
-            let turned = start(a) == start(b);
-            across[a as usize / 3][a as usize % 3] = (b / 3, turned);
-            across[b as usize / 3][b as usize % 3] = (a / 3, turned);
-        });
-        Self { mesh, planes, across, around: Around::new(mesh), classes: Vec::new(), wanted: None }
+        let mut all: Vec<Plane> = (0..count).into_par_iter().map(|t| Plane::through(mesh.corners(t))).collect();
+        all.extend(planes);
+        let neighbours = Neighbours::new(&mesh.triangles, mesh.positions.len());
+        Self { mesh, planes: all, neighbours, around: Around::new(mesh), classes: Vec::new(), target: None }
     }
 
-    /// With a number for each triangle; simplification keeps apart what has different ones.
+    /// The same facets with a number, the class, for each triangle: simplification moves no surface over the border between
+    /// two classes, so that colours and operands stay apart.
     pub fn with_classes(mut self, classes: Vec<u32>) -> Self {
         self.classes = classes;
         self
     }
 
-    /// With a judge of creases: planes that touch something round meet off it.
-    pub fn with_wanted(mut self, wanted: Wanted<'a>) -> Self {
-        self.wanted = Some(wanted);
+    /// The same facets with a judge of creases. Planes that touch something round meet beside it, and a crease there would be
+    /// wrong; the target distance tells.
+    pub fn with_target(mut self, target: TargetDistance<'a>) -> Self {
+        self.target = Some(target);
         self
     }
 
     /// Whether a point is on the surface that is wanted, as far as is known.
-    pub(super) fn is_wanted(&self, p: DVec3, h: f64) -> bool {
-        self.wanted.is_none_or(|off| off(p) < ASTRAY * h)
+    pub(super) fn is_on_target(&self, p: DVec3, h: f64) -> bool {
+        self.target.is_none_or(|off| off(p) < ASTRAY * h)
     }
 
     /// Whether there are any classes.
@@ -147,9 +151,9 @@ impl<'a> Facets<'a> {
         !self.classes.is_empty()
     }
 
-    /// The class of a side's triangle.
-    pub(super) fn class(&self, side: Side) -> u32 {
-        self.classes.get(side.facet() as usize).copied().unwrap_or(u32::MAX)
+    /// The class of a side's triangle, if it has one.
+    pub(super) fn class(&self, side: Side) -> Option<u32> {
+        self.classes.get(side.facet().index()).copied()
     }
 
     /// The source.
@@ -162,23 +166,42 @@ impl<'a> Facets<'a> {
         self.around.of(vertex)
     }
 
-    /// The triangle across an edge (corner k to the next) of a triangle; `None` where there is none, or
-    /// several.
-    pub(super) fn across(&self, facet: u32, edge: usize) -> Option<u32> {
-        Some(self.across[facet as usize][edge].0).filter(|&other| other != NONE)
+    /// The triangle of the source across an edge (corner k to the next) of one; `None` where there is none, or several.
+    pub(super) fn across(&self, triangle: u32, edge: usize) -> Option<u32> {
+        self.neighbours.across(triangle, edge).map(|across| across.triangle)
     }
 
-    /// The number of source triangles: facets from here on have no extent.
+    /// The number of triangles of the source: facets from here on have no extent.
     pub fn triangles(&self) -> usize {
-        self.across.len()
+        self.neighbours.len()
+    }
+
+    /// The triangle of the source that a facet is; `None` for a plane without one.
+    pub fn triangle(&self, facet: FacetId) -> Option<u32> {
+        (facet.index() < self.triangles()).then_some(facet.0)
+    }
+
+    /// The facet that a vertex of a contour lies on, where it is known.
+    pub fn facet_on(&self, ground: Ground) -> Option<FacetId> {
+        match ground {
+            Ground::Unknown => None,
+            Ground::Triangle(triangle) => Some(FacetId(triangle)),
+            Ground::Plane(number) => Some(FacetId(self.triangles() as u32 + number)),
+        }
     }
 
     /// The plane of a side, its normal looking out of the solid. Its normal is zero where the
     /// triangle has no area.
     #[inline]
     pub fn plane(&self, side: Side) -> Plane {
-        let plane = self.planes[side.facet() as usize];
+        let plane = self.planes[side.facet().index()];
         if side.reversed() { Plane { normal: -plane.normal, offset: -plane.offset } } else { plane }
+    }
+
+    /// The side of a triangle of the source that looks the way of `normal`.
+    pub(super) fn facing(&self, triangle: u32, normal: DVec3) -> Side {
+        let facet = FacetId::of_triangle(triangle);
+        Side::new(facet, self.planes[facet.index()].normal.dot(normal) < 0.0)
     }
 
     /// Walks over the source from `side` towards `p` without leaving the smooth piece: the facet
@@ -190,11 +213,8 @@ impl<'a> Facets<'a> {
         for _ in 0..LONGEST_WALK {
             let Some((edge, beyond)) = self.exit(at, p) else { return (at, 0.0) };
             last = beyond;
-            let (next, turned) = self.across[at.facet() as usize][edge];
-            if next == NONE {
-                return (at, beyond);
-            }
-            let next = Side::new(next, at.reversed() != turned);
+            let Some(across) = self.neighbours.across(at.facet().0, edge) else { return (at, beyond) };
+            let next = Side::new(FacetId(across.triangle), at.reversed() != across.turned);
             if self.plane(next).normal.dot(self.plane(at).normal) < SMOOTH {
                 return (at, beyond);
             }
@@ -206,11 +226,12 @@ impl<'a> Facets<'a> {
     /// The edge of a side's triangle that `p` lies farthest beyond, seen along the normal, and by how much; `None`
     /// over the triangle and for facets without extent.
     fn exit(&self, side: Side, p: DVec3) -> Option<(usize, f64)> {
-        if side.facet() as usize >= self.across.len() {
+        let facet = side.facet().index();
+        if facet >= self.triangles() {
             return None;
         }
-        let corners = self.mesh.corners(side.facet() as usize);
-        let normal = self.planes[side.facet() as usize].normal;
+        let corners = self.mesh.corners(facet);
+        let normal = self.planes[facet].normal;
         let beyond = |k: usize| {
             let (a, b) = (corners[k], corners[(k + 1) % 3]);
             let outward = (b - a).cross(normal);

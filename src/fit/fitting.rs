@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::crease::{Crease, FLAT, Place, SMOOTH, crease};
+use super::crease::{Crease, FLAT, Spot, crease};
 use super::cut::{Spared, edges_of, inset};
-use super::facets::Facets;
+use super::facets::{Facets, SMOOTH};
 use super::snap::snap;
-use super::surface::{NOT_KEPT, Surface, rounded};
+use super::surface::{Surface, rounded};
 use super::{FitOptions, FitReport};
 use crate::mesh::around::Around;
 
@@ -36,7 +36,7 @@ pub(super) enum Haste {
 
 /// The state of a fit.
 pub(super) struct Fitting<'a> {
-    home: &'a Surface,
+    initial: &'a Surface,
     facets: &'a Facets<'a>,
     h: f64,
     options: FitOptions,
@@ -51,8 +51,8 @@ pub(super) struct Fitting<'a> {
     pub points: Vec<([u32; 2], Crease)>,
     /// Where nothing is cut any more.
     pub spared: Spared,
-    /// Triangles of the home surface that are other than when they were last judged; `None` for all that
-    /// differ from home.
+    /// Triangles of the initial surface that are other than when they were last judged; `None` for all that
+    /// differ from what they were there.
     dirty: Option<FxHashSet<u32>>,
     /// Moved vertices that have been put a little within the solid.
     drawn_back: FxHashSet<u32>,
@@ -64,17 +64,17 @@ pub(super) struct Fitting<'a> {
 
 impl<'a> Fitting<'a> {
     /// Moves vertices and finds where to cut.
-    pub(super) fn new(home: &'a Surface, facets: &'a Facets<'a>, h: f64, options: &FitOptions) -> Self {
-        let around = Around::new(&home.mesh);
-        let mut surface = home.clone();
-        let mut moved = vec![false; home.mesh.positions.len()];
+    pub(super) fn new(initial: &'a Surface, facets: &'a Facets<'a>, h: f64, options: &FitOptions) -> Self {
+        let around = Around::new(&initial.mesh);
+        let mut surface = initial.clone();
+        let mut moved = vec![false; initial.mesh.positions.len()];
         flatten(&mut surface, facets, h).into_iter().for_each(|v| moved[v as usize] = true);
         let edges = straddling(&surface, facets);
         let snapped = snap(&mut surface, facets, h, &edges, &around);
         snapped.iter().for_each(|&v| moved[v as usize] = true);
         let points = creases(&surface, facets, h, options, edges.par_iter().copied());
         Self {
-            home,
+            initial,
             facets,
             h,
             options: *options,
@@ -83,7 +83,7 @@ impl<'a> Fitting<'a> {
             surface,
             moved,
             points,
-            spared: Spared { triangles: kept_triangles(home), ..Spared::default() },
+            spared: Spared { triangles: kept_triangles(initial), ..Spared::default() },
             dirty: None,
             drawn_back: FxHashSet::default(),
             times_bad: FxHashMap::default(),
@@ -92,17 +92,17 @@ impl<'a> Fitting<'a> {
         }
     }
 
-    /// The triangles, given what they were at home, that are other than at home.
+    /// The triangles, given what they were in the initial surface, that are other than there.
     pub(super) fn changed(&self, origin: &[u32]) -> Vec<u32> {
-        let home = &self.home.mesh.triangles;
-        let mut parts = vec![0u8; home.len()];
+        let initial = &self.initial.mesh.triangles;
+        let mut parts = vec![0u8; initial.len()];
         origin.iter().for_each(|&t| parts[t as usize] += 1);
-        let moved = |id: u32| home[id as usize].iter().any(|&v| self.moved[v as usize]);
+        let moved = |id: u32| initial[id as usize].iter().any(|&v| self.moved[v as usize]);
         let cut_or_moved = |t: &u32| parts[origin[*t as usize] as usize] > 1 || moved(origin[*t as usize]);
         (0..origin.len() as u32).into_par_iter().filter(cut_or_moved).collect()
     }
 
-    /// Whether a triangle, given what it was at home, is other than when it was last judged.
+    /// Whether a triangle, given what it was in the initial surface, is other than when it was last judged.
     pub(super) fn is_dirty(&self, origin: u32) -> bool {
         self.dirty.as_ref().is_none_or(|dirty| dirty.contains(&origin))
     }
@@ -112,7 +112,7 @@ impl<'a> Fitting<'a> {
         self.dirty.as_ref().is_some_and(|dirty| dirty.contains(&origin))
     }
 
-    /// Takes back, step by step, what was done at the home triangles `bad`: first vertices
+    /// Takes back, step by step, what was done at the initial triangles `bad`: first vertices
     /// inside, then cuts, then moves, then all of this around them. For those that are `touching` another sheet the first step
     /// is to stay a little within the solid.
     pub(super) fn undo(&mut self, bad: &[u32], touching: &[u32], centred: &[u32], haste: Haste) {
@@ -122,7 +122,7 @@ impl<'a> Fitting<'a> {
         let mut dirty: FxHashSet<u32> = bad.iter().copied().collect();
         let mut back: FxHashSet<u32> = FxHashSet::default();
         for &t in bad {
-            let ids = self.home.mesh.triangles[t as usize];
+            let ids = self.initial.mesh.triangles[t as usize];
             if !at_once && touching.binary_search(&t).is_ok() && self.spared.inset.insert(t) {
                 dirty.extend(self.draw_back(ids));
                 continue;
@@ -156,7 +156,7 @@ impl<'a> Fitting<'a> {
             }
         }
         for &v in &back {
-            self.surface.put(v, self.home.place(v));
+            self.surface.put(v, self.initial.spot(v));
             self.moved[v as usize] = false;
             dirty.extend(self.around.of(v));
         }
@@ -167,22 +167,22 @@ impl<'a> Fitting<'a> {
         self.points.extend(new);
         self.points.par_sort_unstable_by_key(|p| p.0);
         // What is cut in a triangle also depends on the triangles beside it.
-        let corners = dirty.iter().flat_map(|&t| self.home.mesh.triangles[t as usize]);
+        let corners = dirty.iter().flat_map(|&t| self.initial.mesh.triangles[t as usize]);
         self.dirty = Some(corners.flat_map(|v| self.around.of(v)).copied().collect());
     }
 
-    /// Spares all home triangles within so many rings around one of them; returns their vertices.
+    /// Spares all initial triangles within so many rings around one of them; returns their vertices.
     fn spare_around(&mut self, t: u32, rings: u32) -> Vec<u32> {
         let mut near: Vec<u32> = vec![t];
         for _ in 0..rings {
-            let corners = near.iter().flat_map(|&t| self.home.mesh.triangles[t as usize]);
+            let corners = near.iter().flat_map(|&t| self.initial.mesh.triangles[t as usize]);
             near = corners.flat_map(|v| self.around.of(v)).copied().collect();
             near.sort_unstable();
             near.dedup();
         }
         let mut vertices = Vec::new();
         for t in near {
-            let ids = self.home.mesh.triangles[t as usize];
+            let ids = self.initial.mesh.triangles[t as usize];
             self.spared.triangles.insert(t);
             self.spared.edges.extend(edges_of(&ids));
             vertices.extend(ids);
@@ -190,21 +190,21 @@ impl<'a> Fitting<'a> {
         vertices
     }
 
-    /// Lets what was moved and will be cut at a home triangle stay a little within the solid; returns the triangles around.
+    /// Lets what was moved and will be cut at an initial triangle stay a little within the solid; returns the triangles around.
     fn draw_back(&mut self, ids: [u32; 3]) -> Vec<u32> {
         self.spared.inset_edges.extend(edges_of(&ids));
         for v in ids {
             if self.moved[v as usize] && self.drawn_back.insert(v) {
-                let place = inset(self.surface.place(v), self.facets, self.h);
-                self.surface.put(v, Place { at: rounded(place.at), ..place });
+                let spot = inset(self.surface.spot(v), self.facets, self.h);
+                self.surface.put(v, Spot { at: rounded(spot.at), ..spot });
             }
         }
         ids.iter().flat_map(|&v| self.around.of(v)).copied().collect()
     }
 
-    /// Whether no vertex of one home triangle is a neighbour of one of the other's.
+    /// Whether no vertex of one initial triangle is a neighbour of one of the other's.
     pub(super) fn are_apart(&self, a: u32, b: u32) -> bool {
-        let corners = |t: u32| self.home.mesh.triangles[t as usize];
+        let corners = |t: u32| self.initial.mesh.triangles[t as usize];
         let near = corners(a).into_iter().flat_map(|v| self.around.of(v)).flat_map(|&t| corners(t));
         let other = corners(b);
         !near.into_iter().any(|v| other.contains(&v))
@@ -218,9 +218,9 @@ impl<'a> Fitting<'a> {
 
 /// Moves vertices that lie beside the plane of their one facet onto it.
 fn flatten(surface: &mut Surface, facets: &Facets<'_>, h: f64) -> Vec<u32> {
-    let (sides, kept, positions) = (&surface.sides, &surface.kept, &mut surface.mesh.positions);
+    let (sides, vertices_of, positions) = (&surface.sides, &surface.vertices_of, &mut surface.mesh.positions);
     let moved = positions.par_iter_mut().zip(sides).enumerate().filter_map(|(v, (at, sides))| {
-        if kept[v] != NOT_KEPT {
+        if vertices_of[v].number().is_some() {
             return None;
         }
         let mut own = sides.iter();
@@ -265,7 +265,7 @@ fn creases(
     edges: impl ParallelIterator<Item = [u32; 2]>,
 ) -> Vec<([u32; 2], Crease)> {
     let found = edges.filter_map(|edge| {
-        let found = crease(facets, h, &surface.place(edge[0]), &surface.place(edge[1]))?;
+        let found = crease(facets, h, &surface.spot(edge[0]), &surface.spot(edge[1]))?;
         options.wants(&found, h).then_some((edge, found))
     });
     let mut found: Vec<_> = found.collect();

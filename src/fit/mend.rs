@@ -7,9 +7,9 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::crease::{Place, SMOOTH, nearest};
+use super::crease::{Spot, nearest};
 use super::cut::Cut;
-use super::facets::{Facets, Sides};
+use super::facets::{Facets, SMOOTH, Sides};
 use super::surface::{agreement, faces_out, rounded, shape};
 use crate::mesh::HalfEdges;
 
@@ -25,11 +25,11 @@ const SHARES: [f64; 3] = [0.5, 0.2, 0.8];
 /// Mends the triangles among `changed` that face away from their facets or are too thin. Returns the
 /// triangles that it changed, by the numbers they have after.
 pub(super) fn mend(cut: &mut Cut, facets: &Facets<'_>, h: f64, changed: &[u32]) -> Vec<u32> {
-    let places = |t: &[u32; 3]| t.map(|v| cut.surface.place(v));
+    let spots = |t: &[u32; 3]| t.map(|v| cut.surface.spot(v));
     let wrong: Vec<u32> = changed
         .par_iter()
         .copied()
-        .filter(|&t| !fits(facets, h, &places(&cut.surface.mesh.triangles[t as usize])))
+        .filter(|&t| !fits(facets, h, &spots(&cut.surface.mesh.triangles[t as usize])))
         .collect();
     if wrong.is_empty() {
         return Vec::new();
@@ -51,7 +51,7 @@ pub(super) fn mend(cut: &mut Cut, facets: &Facets<'_>, h: f64, changed: &[u32]) 
 }
 
 /// Whether a triangle faces the way of its facets and is not too thin.
-fn fits(facets: &Facets<'_>, h: f64, corners: &[Place; 3]) -> bool {
+fn fits(facets: &Facets<'_>, h: f64, corners: &[Spot; 3]) -> bool {
     shape(corners.map(|c| c.at)).1 > LEAST_HEIGHT * h && faces_out(facets, corners)
 }
 
@@ -76,7 +76,7 @@ struct Mending<'a> {
 
 impl Mending<'_> {
     fn fits(&self, t: [u32; 3]) -> bool {
-        fits(self.facets, self.h, &t.map(|v| self.cut.surface.place(v)))
+        fits(self.facets, self.h, &t.map(|v| self.cut.surface.spot(v)))
     }
 
     fn at(&self, v: u32) -> DVec3 {
@@ -111,7 +111,7 @@ impl Mending<'_> {
     /// triangles around it fit; returns these.
     fn slide(&mut self, t: u32) -> Vec<u32> {
         for v in self.edges.triangle(t) {
-            let own = self.cut.surface.place(v);
+            let own = self.cut.surface.spot(v);
             let neighbours: Vec<u32> =
                 self.edges.ring(v).map(|e| self.edges.target(e)).filter(|&w| self.lies_on_all(w, &own.sides)).collect();
             if self.cut.surface.is_kept(v) || own.sides.iter().count() != 2 || neighbours.len() < 2 {
@@ -123,7 +123,7 @@ impl Mending<'_> {
                 ends.flat_map(|[i, j]| SHARES.map(|s| self.at(neighbours[i]).lerp(self.at(neighbours[j]), s)));
             for target in between.collect::<Vec<_>>() {
                 let Some(at) = nearest(own.sides.iter().map(|s| self.facets.plane(s)), target) else { continue };
-                self.cut.surface.put(v, Place { at: rounded(at), ..own });
+                self.cut.surface.put(v, Spot { at: rounded(at), ..own });
                 let now = self.edges.ring(v).map(|e| self.fits(self.edges.triangle(e / 3)));
                 if betters(before.iter().copied().zip(now)) {
                     return self.edges.ring(v).map(|e| e / 3).collect();
@@ -147,8 +147,7 @@ impl Mending<'_> {
             return false;
         }
         let (c, d) = (self.edges.apex(e), self.edges.apex(self.edges.twin(e)));
-        let known =
-            |t: [u32; 3]| agreement(self.facets, &t.map(|v| self.cut.surface.place(v))).is_some_and(|a| a > 0.5);
+        let known = |t: [u32; 3]| agreement(self.facets, &t.map(|v| self.cut.surface.spot(v))).is_some_and(|a| a > 0.5);
         [[a, d, c], [d, b, c]].into_iter().all(|t| self.fits(t) && known(t)) && self.edges.can_flip(e)
     }
 
@@ -175,7 +174,7 @@ impl Mending<'_> {
         let mut renumbered = Vec::with_capacity(touched.len());
         let mut triangles = Vec::with_capacity(self.edges.live_triangles());
         let mut origin = Vec::with_capacity(triangles.capacity());
-        let mut facets = Vec::with_capacity(triangles.capacity());
+        let mut triangles_of = Vec::with_capacity(triangles.capacity());
         let mut next = touched.iter().peekable();
         for t in 0..self.edges.triangle_ids() as u32 {
             let is_touched = next.next_if_eq(&&t).is_some();
@@ -187,11 +186,11 @@ impl Mending<'_> {
             }
             triangles.push(self.edges.triangle(t));
             origin.push(self.cut.origin[t as usize]);
-            facets.push(self.cut.surface.facets[t as usize]);
+            triangles_of.push(self.cut.surface.triangles_of[t as usize]);
             number += 1;
         }
         self.cut.surface.mesh.triangles = triangles;
-        self.cut.surface.facets = facets;
+        self.cut.surface.triangles_of = triangles_of;
         self.cut.origin = origin;
         renumbered
     }

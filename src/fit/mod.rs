@@ -27,10 +27,10 @@ mod source;
 mod surface;
 mod zone;
 
-pub use facets::{Facets, Side, Sides, Wanted};
+pub use facets::{FacetId, Facets, Side, Sides, TargetDistance};
 pub use source::{SimpleSource, simplified_source};
+pub use surface::Surface;
 pub(crate) use surface::rounded;
-pub use surface::{NOT_KEPT, Surface};
 
 use crate::ldi::Evidence;
 use crate::progress::{Progress, Stopped};
@@ -49,7 +49,7 @@ pub struct FitOptions {
     /// How far simplification may take the surface away, h; 0 keeps all triangles. Fandisk at 256: 0.002 leaves
     /// 73,000 triangles, 0.003 64,000 with a mean error 0.00003 h larger.
     pub tolerance: f64,
-    /// The same for the source's own vertices, where they are kept, h; 0 keeps all of them.
+    /// How far simplification may take vertices of the source away that were kept, h; 0 keeps all of them.
     pub kept_tolerance: f64,
 }
 
@@ -64,7 +64,7 @@ impl Default for FitOptions {
 pub struct FitReport {
     /// Triangles of the source that were kept as they are, before simplification.
     pub kept: usize,
-    /// Triangles of the source, after cleaning.
+    /// Triangles that the source has, after cleaning.
     pub of: usize,
     /// Vertices moved onto a crease or corner.
     pub moved: usize,
@@ -79,10 +79,10 @@ pub struct FitReport {
 const WORTH_RETRYING: usize = 100;
 
 /// Fits a surface to its facets: creases and corners come back, and what is flat gets few triangles.
-/// `h` is the voxel spacing, model units. `home` must be a valid solid with coordinates in `f32`; the result
-/// is one, too, and `home` itself if nothing else can be.
+/// `h` is the voxel spacing, model units. `initial` must be a valid solid with coordinates in `f32`; the result
+/// is one, too, and `initial` itself if nothing else can be.
 pub fn fit(
-    home: &Surface,
+    initial: &Surface,
     facets: &Facets<'_>,
     evidence: &Evidence,
     h: f64,
@@ -90,26 +90,26 @@ pub fn fit(
     progress: &Progress,
 ) -> Result<(Surface, FitReport), Stopped> {
     if options.keep {
-        let (joined, kept) = keep::keep(home, facets, evidence, h, progress)?;
+        let (joined, kept) = keep::keep(initial, facets, evidence, h, progress)?;
         if let Some((surface, report)) = refined(&joined, facets, h, options, progress)? {
             return Ok((surface, FitReport { kept, of: facets.triangles(), ..report }));
         }
     }
-    let all = home.mesh.triangles.len();
-    let as_it_was = || (home.clone(), FitReport { given_up: all, ..FitReport::default() });
-    let (surface, report) = refined(home, facets, h, options, progress)?.unwrap_or_else(as_it_was);
+    let all = initial.mesh.triangles.len();
+    let as_it_was = || (initial.clone(), FitReport { given_up: all, ..FitReport::default() });
+    let (surface, report) = refined(initial, facets, h, options, progress)?.unwrap_or_else(as_it_was);
     Ok((surface, FitReport { of: facets.triangles(), ..report }))
 }
 
 /// Creases put back and flat parts simplified; `None` when the surface is then no valid solid.
 fn refined(
-    home: &Surface,
+    initial: &Surface,
     facets: &Facets<'_>,
     h: f64,
     options: &FitOptions,
     progress: &Progress,
 ) -> Result<Option<(Surface, FitReport)>, Stopped> {
-    let Sharp { surface, mut report, .. } = sharpen::sharpen(home, facets, h, options, progress)?;
+    let Sharp { surface, mut report, .. } = sharpen::sharpen(initial, facets, h, options, progress)?;
     let untouched = vec![0.0; surface.mesh.triangles.len()];
     let simple = simplify::simplified((&surface, &untouched), facets, h, options, progress)?;
     let Some(Simple { mut surface, off, .. }) = simple else { return Ok(None) };

@@ -23,7 +23,7 @@ pub(super) fn misshapen(
     before: impl Fn(u32) -> DVec3 + Sync,
 ) -> Vec<u32> {
     let wrong = |&t: &u32| {
-        let corners = surface.places(t);
+        let corners = surface.spots(t);
         let (normal, height) = shape(corners.map(|c| c.at));
         let low = height.is_nan() || height < LEAST_HEIGHT * h;
         low || agreement(facets, &corners).unwrap_or_else(|| normal.dot(before(t))) <= 0.0
@@ -87,7 +87,7 @@ pub(super) fn meeting(mesh: &TriMesh, h: f64, changed: &[u32], progress: &Progre
         }
     };
     let near: Vec<u32> = (0..mesh.triangles.len() as u32).into_par_iter().filter(|&t| is_near(t as usize)).collect();
-    let part = part(&mesh.positions, near.iter().map(|&t| mesh.triangles[t as usize]));
+    let part = mesh.submesh(&near).mesh;
     Ok(intersecting_triangles(&part, progress)?.into_iter().map(|t| near[t as usize]).collect())
 }
 
@@ -98,7 +98,7 @@ pub(super) fn touching(
     apart: impl Fn(u32, u32) -> bool,
     progress: &Progress,
 ) -> Result<Vec<u32>, Stopped> {
-    let part = part(&mesh.positions, bad.iter().map(|&t| mesh.triangles[t as usize]));
+    let part = mesh.submesh(bad).mesh;
     let pairs = self_intersections(&part, progress)?.into_iter().map(|pair| pair.map(|t| bad[t as usize]));
     let mut all: Vec<u32> = pairs.filter(|&[a, b]| apart(a, b)).flatten().collect();
     let mut at: FxHashMap<[u64; 3], Vec<u32>> = FxHashMap::default();
@@ -111,20 +111,4 @@ pub(super) fn touching(
     all.sort_unstable();
     all.dedup();
     Ok(all)
-}
-
-/// Some triangles over `positions` as a mesh of their own, in the same order.
-pub(super) fn part(positions: &[DVec3], triangles: impl Iterator<Item = [u32; 3]>) -> TriMesh {
-    let mut part = TriMesh::default();
-    let mut number: FxHashMap<u32, u32> = FxHashMap::default();
-    for t in triangles {
-        let corners = t.map(|v| {
-            *number.entry(v).or_insert_with(|| {
-                part.positions.push(positions[v as usize]);
-                part.positions.len() as u32 - 1
-            })
-        });
-        part.triangles.push(corners);
-    }
-    part
 }

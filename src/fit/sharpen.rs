@@ -35,9 +35,9 @@ pub(super) struct Sharp {
 }
 
 /// Moves vertices onto creases, cuts the triangles that reach over them, and takes back what makes a
-/// triangle turn over or meet another. `home` must be valid, and so is the result.
+/// triangle turn over or meet another. `initial` must be valid, and so is the result.
 pub(super) fn sharpen(
-    home: &Surface,
+    initial: &Surface,
     facets: &Facets<'_>,
     h: f64,
     options: &FitOptions,
@@ -45,7 +45,7 @@ pub(super) fn sharpen(
 ) -> Result<Sharp, Stopped> {
     // Triangles that mending made and that were judged to be right: it makes most of them again each time.
     let mut fine: FxHashSet<[u64; 9]> = FxHashSet::default();
-    let mut fitting = Fitting::new(home, facets, h, options);
+    let mut fitting = Fitting::new(initial, facets, h, options);
     for round in 0..MOST_ROUNDS {
         progress.check()?;
         let mut cut = cut::cut(&fitting.surface, facets, h, &fitting.points, &fitting.spared, |c| options.wants(c, h));
@@ -57,10 +57,10 @@ pub(super) fn sharpen(
             fitting.changed(&cut.origin).into_iter().filter(|&t| fitting.is_dirty(cut.origin[t as usize])),
             &mended,
         );
-        // A triangle that is back at home is right by itself, but what is near it may not be.
+        // A triangle that is back where it was at first is right by itself, but what is near it may not be.
         let back = (0..cut.origin.len() as u32).filter(|&t| fitting.was_dirtied(cut.origin[t as usize]));
         let near = merged(back, &other);
-        let before = |t: u32| shape(home.mesh.corners(cut.origin[t as usize] as usize)).0;
+        let before = |t: u32| shape(initial.mesh.corners(cut.origin[t as usize] as usize)).0;
         let mut bad = safeguard::misshapen(&cut.surface, facets, h, &other, before);
         bad.extend(safeguard::coincident(&cut.surface.mesh, &near));
         bad.extend(safeguard::meeting(&cut.surface.mesh, h, &near, progress)?);
@@ -77,8 +77,8 @@ pub(super) fn sharpen(
         let bad = merged(bad.into_iter().map(|t| cut.origin[t as usize]), &[]);
         fitting.undo(&bad, &touching, &cut.centred, haste(round));
     }
-    let report = FitReport { given_up: home.mesh.triangles.len(), ..FitReport::default() };
-    Ok(Sharp { surface: home.clone(), origin: (0..home.mesh.triangles.len() as u32).collect(), report })
+    let report = FitReport { given_up: initial.mesh.triangles.len(), ..FitReport::default() };
+    Ok(Sharp { surface: initial.clone(), origin: (0..initial.mesh.triangles.len() as u32).collect(), report })
 }
 
 /// The places of a triangle's corners, bit by bit, the first one first in some order of places.

@@ -18,10 +18,10 @@ use super::FitOptions;
 use super::deviation::deviation;
 use super::facets::Facets;
 use super::quadric::Quadric;
-use super::safeguard::part;
+
 use super::surface::{Surface, agreement, shape};
 use super::zone::{Zone, meeting_places};
-use crate::mesh::{CollapseRecord, HalfEdges, TriMesh, ValidateOptions, intersecting_triangles, validate};
+use crate::mesh::{CollapseRecord, HalfEdges, Submesh, TriMesh, ValidateOptions, intersecting_triangles, validate};
 use crate::progress::{Progress, Stopped};
 
 /// By how much a triangle may turn away from the facets of its corners (one minus the cosine,
@@ -253,7 +253,7 @@ fn quadrics(surface: &Surface, facets: &Facets<'_>, h: f64, edges: &HalfEdges) -
 /// The plane of a triangle, as normal and point: that of the facet it lies on, if it does, since its own is
 /// only as good as its height; none for thin ones.
 fn plane(surface: &Surface, facets: &Facets<'_>, h: f64, t: usize) -> Option<(DVec3, DVec3)> {
-    let corners = surface.places(t as u32);
+    let corners = surface.spots(t as u32);
     let (normal, height) = shape(corners.map(|c| c.at));
     let normal = normal.normalize_or_zero();
     let on = |s: &super::Side| corners.iter().all(|c| facets.plane(*s).distance(c.at).abs() < ON_FACET * h);
@@ -293,11 +293,16 @@ impl<'a> Work<'a> {
         let compacted = edges.compacted();
         let positions = compacted.vertices.iter().map(|&v| surface.at(v)).collect();
         let sides = compacted.vertices.iter().map(|&v| surface.sides[v as usize]).collect();
-        let kept = compacted.vertices.iter().map(|&v| surface.kept[v as usize]).collect();
+        let vertices_of = compacted.vertices.iter().map(|&v| surface.vertices_of[v as usize]).collect();
         let live = (0..edges.triangle_ids()).filter(|&t| edges.is_live_triangle(t as u32));
-        let (facets, off) = live.map(|t| (surface.facets[t], self.off[t])).unzip();
+        let (triangles_of, off) = live.map(|t| (surface.triangles_of[t], self.off[t])).unzip();
         Simple {
-            surface: Surface { mesh: TriMesh { positions, triangles: compacted.triangles }, sides, kept, facets },
+            surface: Surface {
+                mesh: TriMesh { positions, triangles: compacted.triangles },
+                sides,
+                vertices_of,
+                triangles_of,
+            },
             off,
         }
     }
@@ -318,7 +323,8 @@ impl<'a> Work<'a> {
         loop {
             let live = |t: &u32| watch.is[*t as usize] && self.edges.is_live_triangle(*t);
             let near: Vec<u32> = (0..watch.is.len() as u32).into_par_iter().filter(live).collect();
-            let part = part(&self.surface.mesh.positions, near.iter().map(|&t| self.edges.triangle(t)));
+            let triangles = near.iter().map(|&t| self.edges.triangle(t)).collect();
+            let part = Submesh::of(&self.surface.mesh.positions, triangles).mesh;
             let mut bad = vec![false; watch.is.len()];
             intersecting_triangles(&part, progress)?.iter().for_each(|&t| bad[near[t as usize] as usize] = true);
             let harmful = |one: &Done| one.record.changed().iter().any(|&t| bad[t as usize]);
@@ -348,8 +354,8 @@ impl<'a> Work<'a> {
             let cost = self.cost(vertex, to);
             let entry = (cost, self.at[to as usize].distance_squared(self.at[vertex as usize]), e);
             if cost <= self.most * self.most && self.edges.valence(to) < MOST_EDGES {
-                let place = best.iter().position(|b| entry.0 < b.0 || (entry.0 == b.0 && entry.1 < b.1));
-                if let Some(k) = place {
+                let spot = best.iter().position(|b| entry.0 < b.0 || (entry.0 == b.0 && entry.1 < b.1));
+                if let Some(k) = spot {
                     best[k..].rotate_right(1);
                     best[k] = entry;
                 }
@@ -403,11 +409,10 @@ impl<'a> Work<'a> {
     /// Whether a triangle cuts off a crease, as it did before, and still faces the same way: it may turn as it
     /// likes, for the crease will be put back.
     fn cuts_off(&self, t: [u32; 3], before: [u32; 3]) -> bool {
-        let places = |t: [u32; 3]| t.map(|v| self.surface.place(v));
+        let spots = |t: [u32; 3]| t.map(|v| self.surface.spot(v));
         let normal = |t: [u32; 3]| shape(t.map(|v| self.at[v as usize])).0.normalize_or_zero();
         let apart = |t: [u32; 3]| {
-            t.iter().all(|&v| !self.surface.sides[v as usize].is_empty())
-                && agreement(self.facets, &places(t)).is_none()
+            t.iter().all(|&v| !self.surface.sides[v as usize].is_empty()) && agreement(self.facets, &spots(t)).is_none()
         };
         normal(t).dot(normal(before)) > STILL_FACING && apart(before) && apart(t)
     }

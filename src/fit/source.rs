@@ -1,9 +1,9 @@
 //! Simplification of a source mesh that is right already.
 
 use super::FitOptions;
-use super::facets::{Facets, Side, Sides};
+use super::facets::{FacetId, Facets, Side, Sides};
 use super::simplify::simplified;
-use super::surface::{NOT_KEPT, Surface};
+use super::surface::{OfSource, Surface};
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
 
@@ -12,12 +12,13 @@ use crate::progress::{Progress, Stopped};
 pub struct SimpleSource {
     /// The simplified solid.
     pub mesh: TriMesh,
-    /// For each of its triangles the one of the source that it lies on.
+    /// For each triangle of the simplified solid the triangle of the source that it lies on.
     pub of: Vec<Option<u32>>,
 }
 
-/// A valid solid with its flat parts simplified within [`FitOptions::kept_tolerance`]. `classes` has a number for each triangle, or nothing: what has different ones is kept apart. `h` is the voxel
-/// spacing that the tolerance refers to, model units. `None` where the mesh is no valid solid, as it is or with coordinates in `f32`.
+/// Simplifies the flat parts of a valid solid within [`FitOptions::kept_tolerance`]. `classes` is empty or has a number for
+/// each triangle; triangles of different numbers are kept apart. `h` is the voxel spacing that the tolerance refers to, model
+/// units. There is no result where the mesh is no valid solid, as it is or with coordinates in `f32`.
 ///
 /// # Errors
 /// Only a stop.
@@ -29,20 +30,22 @@ pub fn simplified_source(
     progress: &Progress,
 ) -> Result<Option<SimpleSource>, Stopped> {
     let facets = Facets::new(mesh, []).with_classes(classes);
-    let mut sides = vec![Sides::default(); mesh.positions.len()];
-    for (t, corners) in (0..).zip(&mesh.triangles) {
-        corners.iter().for_each(|&v| sides[v as usize].add(Side::new(t, false)));
-    }
-    let surface = Surface {
-        mesh: mesh.clone(),
-        sides,
-        kept: (0..mesh.positions.len() as u32).collect(),
-        facets: vec![NOT_KEPT; mesh.triangles.len()],
-    };
+    let vertices_of = (0..mesh.positions.len() as u32).map(OfSource::new).collect();
+    let surface = Surface { vertices_of, ..Surface::new(mesh.clone(), own_sides(mesh)) };
     let options = FitOptions { tolerance: options.kept_tolerance, ..*options };
     let untouched = vec![0.0; mesh.triangles.len()];
     let simple = simplified((&surface, &untouched), &facets, h, &options, progress)?;
     let Some(simple) = simple.map(|simple| simple.surface) else { return Ok(None) };
-    let of = (0..simple.mesh.triangles.len() as u32).map(|t| simple.facet(&facets, t)).collect();
+    let on = |t: u32| simple.facet(&facets, t).and_then(|facet| facets.triangle(facet));
+    let of = (0..simple.mesh.triangles.len() as u32).map(on).collect();
     Ok(Some(SimpleSource { mesh: simple.mesh, of }))
+}
+
+/// The triangles that each vertex of a mesh lies on, as facets of the mesh itself.
+pub(super) fn own_sides(mesh: &TriMesh) -> Vec<Sides> {
+    let mut sides = vec![Sides::default(); mesh.positions.len()];
+    for (t, corners) in (0..).zip(&mesh.triangles) {
+        corners.iter().for_each(|&v| sides[v as usize].add(Side::new(FacetId::of_triangle(t), false)));
+    }
+    sides
 }

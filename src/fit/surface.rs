@@ -3,8 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::crease::{Place, SMOOTH};
-use super::facets::{Facets, Side, Sides};
+use super::crease::Spot;
+use super::facets::{FacetId, Facets, SMOOTH, Side, Sides};
 use crate::mesh::TriMesh;
 
 /// A triangle whose centre lies this part of its height beyond the source is not on it.
@@ -15,46 +15,75 @@ const OFF: f64 = 0.05;
 pub struct Surface {
     /// The surface, model units; every coordinate is an `f32`.
     pub mesh: TriMesh,
-    /// One for each vertex.
+    /// The facets that each vertex lies on.
     pub sides: Vec<Sides>,
-    /// For each vertex the vertex of the source that it is, or [`NOT_KEPT`].
-    pub kept: Vec<u32>,
-    /// For each triangle the triangle of the source that it was, before flat parts were simplified, or [`NOT_KEPT`].
-    pub facets: Vec<u32>,
+    /// For each vertex the vertex of the source that it is.
+    pub(super) vertices_of: Vec<OfSource>,
+    /// For each triangle the triangle of the source that it was, before flat parts were simplified.
+    pub(super) triangles_of: Vec<OfSource>,
 }
 
-/// A vertex or triangle that is none of the source's.
-pub const NOT_KEPT: u32 = u32::MAX;
+/// The number of a vertex or triangle of the source, or none, in four bytes: surfaces have millions of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct OfSource(u32);
+
+impl OfSource {
+    /// What is none of the source's.
+    pub(super) const NONE: Self = Self(u32::MAX);
+
+    /// Number `number` of the source's.
+    pub(super) fn new(number: u32) -> Self {
+        Self(number)
+    }
+
+    /// The number.
+    #[inline]
+    pub(super) fn number(self) -> Option<u32> {
+        (self != Self::NONE).then_some(self.0)
+    }
+}
 
 impl Surface {
     /// A surface none of whose vertices is one of the source's.
     pub fn new(mesh: TriMesh, sides: Vec<Sides>) -> Self {
-        let (kept, facets) = (vec![NOT_KEPT; mesh.positions.len()], vec![NOT_KEPT; mesh.triangles.len()]);
-        Self { mesh, sides, kept, facets }
+        let vertices_of = vec![OfSource::NONE; mesh.positions.len()];
+        let triangles_of = vec![OfSource::NONE; mesh.triangles.len()];
+        Self { mesh, sides, vertices_of, triangles_of }
     }
 
-    pub(super) fn add(&mut self, place: Place, kept: u32) {
-        self.mesh.positions.push(place.at);
-        self.sides.push(place.sides);
-        self.kept.push(kept);
+    /// The vertex of the source that a vertex is, if it is one.
+    pub fn source_vertex(&self, vertex: u32) -> Option<u32> {
+        self.vertices_of[vertex as usize].number()
+    }
+
+    /// The triangle of the source that a triangle was before flat parts were simplified, if it was one.
+    pub fn source_triangle(&self, t: u32) -> Option<u32> {
+        self.triangles_of[t as usize].number()
+    }
+
+    /// Adds a vertex, and says which vertex of the source it is.
+    pub(super) fn add(&mut self, spot: Spot, of: OfSource) {
+        self.mesh.positions.push(spot.at);
+        self.sides.push(spot.sides);
+        self.vertices_of.push(of);
     }
 
     /// Whether a vertex is one of the source's.
     pub(super) fn is_kept(&self, vertex: u32) -> bool {
-        self.kept[vertex as usize] != NOT_KEPT
+        self.source_vertex(vertex).is_some()
     }
 
     pub(super) fn at(&self, vertex: u32) -> DVec3 {
         self.mesh.positions[vertex as usize]
     }
 
-    pub(super) fn put(&mut self, vertex: u32, place: Place) {
-        self.mesh.positions[vertex as usize] = place.at;
-        self.sides[vertex as usize] = place.sides;
+    pub(super) fn put(&mut self, vertex: u32, spot: Spot) {
+        self.mesh.positions[vertex as usize] = spot.at;
+        self.sides[vertex as usize] = spot.sides;
     }
 
-    pub(super) fn place(&self, vertex: u32) -> Place {
-        Place { at: self.at(vertex), sides: self.sides[vertex as usize] }
+    pub(super) fn spot(&self, vertex: u32) -> Spot {
+        Spot { at: self.at(vertex), sides: self.sides[vertex as usize] }
     }
 
     /// The edges, each once, smaller vertex first; the surface must be closed.
@@ -82,22 +111,19 @@ impl Surface {
     /// The facets around a vertex, as seen by a triangle with this normal: all of them for one of the source's, which has
     /// more than [`Sides`] hold.
     pub(super) fn facets_at(&self, facets: &Facets<'_>, vertex: u32, normal: DVec3) -> Vec<Side> {
-        if !self.is_kept(vertex) {
-            return self.sides[vertex as usize].iter().collect();
+        match self.source_vertex(vertex) {
+            Some(own) => facets.around(own).iter().map(|&t| facets.facing(t, normal)).collect(),
+            None => self.sides[vertex as usize].iter().collect(),
         }
-        let facing = |&t: &u32| Side::new(t, facets.plane(Side::new(t, false)).normal.dot(normal) < 0.0);
-        facets.around(self.kept[vertex as usize]).iter().map(facing).collect()
     }
 
     /// The facet that a triangle lies on; `None` where nothing is known.
-    pub fn facet(&self, facets: &Facets<'_>, t: u32) -> Option<u32> {
-        let corners = self.places(t);
+    pub fn facet(&self, facets: &Facets<'_>, t: u32) -> Option<FacetId> {
+        let corners = self.spots(t);
         let centre = corners.iter().map(|c| c.at).sum::<DVec3>() / 3.0;
         let normal = shape(corners.map(|c| c.at)).0.normalize_or_zero();
-        let own = self.facets[t as usize];
-        if own != NOT_KEPT {
-            let side = Side::new(own, facets.plane(Side::new(own, false)).normal.dot(normal) < 0.0);
-            return Some(facets.walk(side, centre).0.facet());
+        if let Some(own) = self.source_triangle(t) {
+            return Some(facets.walk(facets.facing(own, normal), centre).0.facet());
         }
         let around = self.mesh.triangles[t as usize].map(|v| self.facets_at(facets, v, normal));
         let known = around.iter().filter(|sides| !sides.is_empty()).count();
@@ -119,17 +145,17 @@ impl Surface {
     }
 
     /// The corners of a triangle.
-    pub(super) fn places(&self, t: u32) -> [Place; 3] {
-        self.mesh.triangles[t as usize].map(|v| self.place(v))
+    pub(super) fn spots(&self, t: u32) -> [Spot; 3] {
+        self.mesh.triangles[t as usize].map(|v| self.spot(v))
     }
 }
 
 /// How well a triangle agrees with its facets: the cosine between its normal and that of the facet,
 /// of those its corners lie on, whose smooth piece all corners share and that agrees best; `None` where there
 /// is no such piece.
-pub(super) fn agreement(facets: &Facets<'_>, corners: &[Place; 3]) -> Option<f64> {
+pub(super) fn agreement(facets: &Facets<'_>, corners: &[Spot; 3]) -> Option<f64> {
     let normal = shape(corners.map(|c| c.at)).0.normalize_or_zero();
-    let has = |corner: &Place, p: Side| {
+    let has = |corner: &Spot, p: Side| {
         corner.sides.iter().any(|q| p == q || facets.plane(p).normal.dot(facets.plane(q).normal) > SMOOTH)
     };
     let all = corners.iter().flat_map(|c| c.sides.iter());
@@ -139,7 +165,7 @@ pub(super) fn agreement(facets: &Facets<'_>, corners: &[Place; 3]) -> Option<f64
 }
 
 /// Whether a triangle does not face away from its facets.
-pub(super) fn faces_out(facets: &Facets<'_>, corners: &[Place; 3]) -> bool {
+pub(super) fn faces_out(facets: &Facets<'_>, corners: &[Spot; 3]) -> bool {
     agreement(facets, corners).is_none_or(|a| a > 0.0)
 }
 

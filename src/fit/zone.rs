@@ -3,7 +3,6 @@
 use glam::{DVec3, IVec3};
 use rustc_hash::FxHashSet;
 
-use super::safeguard::part;
 use crate::mesh::{Shape, TriMesh, self_intersections};
 use crate::progress::{Progress, Stopped};
 
@@ -71,7 +70,7 @@ fn steps(low: IVec3, high: IVec3) -> impl Iterator<Item = IVec3> {
 
 /// Points at which the triangles `bad` of a mesh meet others of them.
 pub(super) fn meeting_places(mesh: &TriMesh, bad: &[u32], h: f64, progress: &Progress) -> Result<Vec<DVec3>, Stopped> {
-    let part = part(&mesh.positions, bad.iter().map(|&t| mesh.triangles[t as usize]));
+    let part = mesh.submesh(bad).mesh;
     let mut places = Vec::new();
     for pair in self_intersections(&part, progress)? {
         let [a, b] = pair.map(|t| part.corners(t as usize));

@@ -5,11 +5,11 @@ use rayon::prelude::*;
 
 use super::run::{Run, Source};
 use super::{Device, GpuError, GpuReport, shaders};
-use crate::lattice::{BRICK, Grid, Lattice};
+use crate::lattice::{BRICK, DistanceField, Lattice};
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
 use crate::sdf::exact::{ExactOptions, Slab, Slabs};
-use crate::sdf::prism::{Facet, Frustum, MOST_CORNERS, Prisms, Table};
+use crate::sdf::prism::{Frustum, MOST_CORNERS, Prisms, Table, TriangleFrame};
 
 /// Where nothing is drawn: beyond any band.
 const NOTHING: f64 = 1e30;
@@ -29,7 +29,7 @@ pub fn prism(
     options: &ExactOptions,
     timings: bool,
     progress: &Progress,
-) -> Result<(Grid<f32>, GpuReport), GpuError> {
+) -> Result<(DistanceField, GpuReport), GpuError> {
     let mut slabs = Slabs::new(mesh, lattice, options)?;
     let (band, end) = (slabs.band(), slabs.end());
     let size = [end.x as u32, end.y as u32];
@@ -44,7 +44,7 @@ pub fn prism(
     let pieces = prisms.frusta.chunks((limit as usize).max(1));
     let tables: Vec<Table> = pieces.clone().map(|frusta| Table::new(frusta, end.z)).collect();
     let chunks: Vec<Chunk> =
-        pieces.zip(&tables).map(|(frusta, table)| Chunk::new(&mut run, &prisms.facets, frusta, table)).collect();
+        pieces.zip(&tables).map(|(frusta, table)| Chunk::new(&mut run, &prisms.frames, frusta, table)).collect();
     let slices = Slices::new(&run, size, band as f32);
     let mut sweeps: Vec<_> = tables.iter().map(Table::sweep).collect();
     for low in (0..end.z).step_by(BRICK as usize) {
@@ -61,24 +61,24 @@ pub fn prism(
     Ok((field, GpuReport { bytes_up: run.up, bytes_down: run.down, passes: run.passes() }))
 }
 
-/// Some frusta, with the facets they are of, and their sections.
+/// Some frusta, with the frames they are of, and their sections.
 struct Chunk {
-    facets: wgpu::Buffer,
+    frames: wgpu::Buffer,
     frusta: wgpu::Buffer,
     sections: wgpu::Buffer,
 }
 
 impl Chunk {
-    fn new(run: &mut Run<'_>, facets: &[Facet], frusta: &[Frustum], table: &Table) -> Self {
-        // Frusta are in the order of their facets.
-        let first = frusta.first().map_or(0, |frustum| frustum.facet);
-        let last = frusta.last().map_or(0, |frustum| frustum.facet + 1);
-        let facets = &facets[first as usize..last as usize];
+    fn new(run: &mut Run<'_>, frames: &[TriangleFrame], frusta: &[Frustum], table: &Table) -> Self {
+        // Frusta are in the order of their frames.
+        let first = frusta.first().map_or(0, |frustum| frustum.frame);
+        let last = frusta.last().map_or(0, |frustum| frustum.frame + 1);
+        let frames = &frames[first as usize..last as usize];
         let usage = wgpu::BufferUsages::STORAGE;
-        let words: Vec<u32> = facets.par_iter().flat_map_iter(facet_words).collect();
-        let facet_buffer = run.upload(&words, usage);
+        let words: Vec<u32> = frames.par_iter().flat_map_iter(frame_words).collect();
+        let frame_buffer = run.upload(&words, usage);
         let of = |frustum: &Frustum| {
-            frustum_words(frustum, frustum.facet - first, &facets[(frustum.facet - first) as usize])
+            frustum_words(frustum, frustum.frame - first, &frames[(frustum.frame - first) as usize])
         };
         let words: Vec<u32> = frusta.par_iter().flat_map_iter(of).collect();
         let frustum_buffer = run.upload(&words, usage);
@@ -87,22 +87,22 @@ impl Chunk {
             [section.frustum, word(0), word(1)]
         };
         let words: Vec<u32> = table.sections().iter().flat_map(section).collect();
-        Self { facets: facet_buffer, frusta: frustum_buffer, sections: run.upload(&words, usage) }
+        Self { frames: frame_buffer, frusta: frustum_buffer, sections: run.upload(&words, usage) }
     }
 }
 
-fn facet_words(facet: &Facet) -> Vec<u32> {
+fn frame_words(frame: &TriangleFrame) -> Vec<u32> {
     let bits = |v: Vec3| v.to_array().map(f32::to_bits);
-    let [r, s, t] = facet.axes.map(bits);
-    let [a, h, b] = facet.sizes.map(f32::to_bits);
-    let base = facet.base.to_array().map(|x| x as u32);
-    let rows = [(base, a), (bits(facet.origin), h), (r, b), (s, 0), (t, 0)];
-    let normals = facet.normals.map(|normal| (bits(normal), 0));
+    let [r, s, t] = frame.axes.map(bits);
+    let [a, h, b] = frame.sizes.map(f32::to_bits);
+    let base = frame.base.to_array().map(|x| x as u32);
+    let rows = [(base, a), (bits(frame.origin), h), (r, b), (s, 0), (t, 0)];
+    let normals = frame.normals.map(|normal| (bits(normal), 0));
     rows.into_iter().chain(normals).flat_map(|([x, y, z], w)| [x, y, z, w]).collect()
 }
 
-fn frustum_words(frustum: &Frustum, number: u32, facet: &Facet) -> Vec<u32> {
-    let base: DVec3 = facet.base.as_dvec3();
+fn frustum_words(frustum: &Frustum, number: u32, frame: &TriangleFrame) -> Vec<u32> {
+    let base: DVec3 = frame.base.as_dvec3();
     let from_base = frustum.corners.iter().map(|corner| (*corner - base).as_vec3().to_array().map(f32::to_bits));
     from_base.zip(std::iter::once(number).chain(std::iter::repeat(0))).flat_map(|([x, y, z], w)| [x, y, z, w]).collect()
 }
@@ -145,7 +145,7 @@ impl Slices {
             for ((chunk, active), start) in chunks.iter().zip(&active).zip(&starts) {
                 let size = self.size.map(|side| (side as f32).to_bits());
                 let view = run.upload(&[(low + k as i32) as u32, *start, size[0], size[1]], usage);
-                let buffers = [&view, active, &chunk.sections, &chunk.frusta, &chunk.facets];
+                let buffers = [&view, active, &chunk.sections, &chunk.frusta, &chunk.frames];
                 groups.push(run.bind(&layout, &buffers.map(|buffer| buffer.as_entire_binding())));
             }
             let mut pass = self.begin(run, &mut encoder, texture);

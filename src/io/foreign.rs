@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::error::ReadProblem;
+use super::error::FileProblem;
 use super::grids::GridFormat;
 
 /// A kind of file: how it begins, what it is, and what to do.
@@ -79,7 +79,7 @@ const ELEMENTS: [Kind; 8] = [
 ];
 
 /// What the file really is, if that can be told and it is no mesh that is read here.
-pub(super) fn recognise(bytes: &[u8], path: Option<&Path>) -> Option<ReadProblem> {
+pub(super) fn recognise(bytes: &[u8], path: Option<&Path>) -> Option<FileProblem> {
     if let Some(format) = GridFormat::from_content(bytes) {
         let what = match format {
             GridFormat::Vti => "a data set of VTK, such as a lattice of values (VTI)",
@@ -88,11 +88,11 @@ pub(super) fn recognise(bytes: &[u8], path: Option<&Path>) -> Option<ReadProblem
             GridFormat::Vdb => "a lattice of values (VDB)",
         };
         let advice = "field makes a surface of a lattice, and render draws its slices; the other verbs want a mesh";
-        return Some(ReadProblem::Foreign { what, advice });
+        return Some(FileProblem::Foreign { what, advice });
     }
     let of = |kinds: &[Kind], begins: &dyn Fn(&[u8]) -> bool| {
         let found = kinds.iter().find(|(start, ..)| begins(start));
-        found.map(|&(_, what, advice)| ReadProblem::Foreign { what, advice })
+        found.map(|&(_, what, advice)| FileProblem::Foreign { what, advice })
     };
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let head = text[..text.len().min(1024)].to_ascii_lowercase();
@@ -109,8 +109,8 @@ fn has_element(head: &[u8], start: &[u8]) -> bool {
 }
 
 /// What is not told by its first bytes.
-fn others(bytes: &[u8], text: &[u8], path: Option<&Path>) -> Option<ReadProblem> {
-    let foreign = |what, advice| Some(ReadProblem::Foreign { what, advice });
+fn others(bytes: &[u8], text: &[u8], path: Option<&Path>) -> Option<FileProblem> {
+    let foreign = |what, advice| Some(FileProblem::Foreign { what, advice });
     if bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP") {
         return foreign("a WebP picture", PICTURE);
     }
@@ -142,7 +142,7 @@ mod tests {
 
     fn what(bytes: &[u8]) -> Option<&'static str> {
         match recognise(bytes, None) {
-            Some(ReadProblem::Foreign { what, .. }) => Some(what),
+            Some(FileProblem::Foreign { what, .. }) => Some(what),
             _ => None,
         }
     }

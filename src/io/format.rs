@@ -1,12 +1,9 @@
-//! The formats, told by content first, then by extension.
+//! The formats of meshes and their names.
 
 use std::ffi::OsStr;
 use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
-
-use super::text::{Lines, Words, number};
-use super::{off, stl};
 
 /// A mesh file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -33,6 +30,14 @@ impl Format {
         matches!(self, Self::Stl | Self::Glb | Self::Gltf)
     }
 
+    /// Whether files of the format repeat a vertex for its triangles, so that vertices at equal positions mean the same place: STL
+    /// has no indices at all, and glTF splits vertices where normals, colours or texture coordinates differ. Before such a mesh is judged or
+    /// taken apart along its edges, its vertices must be merged ([`TriMesh::welded`](crate::mesh::TriMesh::welded)); in the other formats
+    /// two vertices at one place are two, because the file says so.
+    pub fn repeats_vertices(self) -> bool {
+        matches!(self, Self::Stl | Self::Glb | Self::Gltf)
+    }
+
     /// Every format.
     pub const ALL: [Self; 7] = [Self::Stl, Self::Obj, Self::Ply, Self::Off, Self::Glb, Self::Gltf, Self::ThreeMf];
 
@@ -50,54 +55,9 @@ impl Format {
     }
 
     /// The format that the extension of `path` names, in any case of letters.
-    pub fn from_path(path: &Path) -> Option<Self> {
-        path.extension().and_then(OsStr::to_str)?.parse().ok()
+    pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
+        path.as_ref().extension().and_then(OsStr::to_str)?.parse().ok()
     }
-
-    /// The format of `bytes` by what they hold; if that tells nothing, by the extension of `path`.
-    pub fn detect(bytes: &[u8], path: Option<&Path>) -> Option<Self> {
-        let named = path.and_then(Self::from_path);
-        Self::from_content(bytes).or(named).or_else(|| stl::looks_binary(bytes).then_some(Self::Stl))
-    }
-
-    /// The format of `bytes` by what they hold.
-    pub(super) fn from_content(bytes: &[u8]) -> Option<Self> {
-        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
-        if bytes.starts_with(b"glTF") {
-            Some(Self::Glb)
-        } else if bytes.starts_with(b"PK\x03\x04") {
-            Some(Self::ThreeMf)
-        } else if matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r' | b' ', ..]) {
-            Some(Self::Ply)
-        } else if stl::is_exactly_binary(bytes) || stl::looks_ascii(bytes) {
-            Some(Self::Stl)
-        } else if off::has_keyword(bytes) {
-            Some(Self::Off)
-        } else if text.starts_with(b"{") && contains(&text[..text.len().min(1 << 16)], b"\"asset\"") {
-            Some(Self::Gltf)
-        } else {
-            looks_like_obj(bytes).then_some(Self::Obj)
-        }
-    }
-}
-
-/// A vertex line before anything that OBJ does not know, within the first lines.
-fn looks_like_obj(bytes: &[u8]) -> bool {
-    for (_, line) in Lines::new(&bytes[..bytes.len().min(1 << 16)]).take(1000) {
-        let mut words = Words::new(line);
-        match words.next() {
-            None => {}
-            Some(b"v") => return words.by_ref().take(3).filter_map(number).count() == 3,
-            Some(word) if word.starts_with(b"#") => {}
-            Some(b"vn" | b"vt" | b"vp" | b"o" | b"g" | b"s" | b"mtllib" | b"usemtl" | b"mg") => {}
-            Some(_) => return false,
-        }
-    }
-    false
-}
-
-fn contains(haystack: &[u8], needle: &[u8]) -> bool {
-    haystack.windows(needle.len()).any(|window| window == needle)
 }
 
 impl fmt::Display for Format {
@@ -133,18 +93,5 @@ mod tests {
             assert_eq!(Format::from_path(Path::new(&format!("a.b/c.{}", format.name().to_uppercase()))), Some(format));
         }
         assert_eq!(Format::from_path(Path::new("3mf")), None);
-    }
-
-    #[test]
-    fn content_wins_over_the_extension() {
-        let lies = Some(Path::new("lies.stl"));
-        assert_eq!(Format::detect(b"# x\no cube\nv 0 0 0\n", lies), Some(Format::Obj));
-        assert_eq!(Format::detect(b"ply\nformat ascii 1.0\n", lies), Some(Format::Ply));
-        assert_eq!(Format::detect(b"# c\nCOFF\n", lies), Some(Format::Off));
-        assert_eq!(Format::detect(b"{\"asset\":{}}", lies), Some(Format::Gltf));
-        assert_eq!(Format::detect(b"solid a\nfacet normal 0 0 1\n", Some(Path::new("x.obj"))), Some(Format::Stl));
-        assert_eq!(Format::detect(b"who knows", lies), Some(Format::Stl));
-        assert_eq!(Format::detect(b"who knows", None), None);
-        assert_eq!(Format::detect(b"", Some(Path::new("a.off"))), Some(Format::Off));
     }
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::colour::{Colours, LEVELS_OF_WHITE, Levels, Tails};
-use super::error::{ReadError, ReadProblem, WriteError};
+use super::error::{FileError, FileProblem, WriteError};
 use super::soup::Soup;
 use super::text::{Lines, TextOut, Words, integer, number, quoted};
 use super::{Format, Loaded};
@@ -78,11 +78,11 @@ impl<'a> Stream<'a> {
     }
 
     /// The colour after what was begun on line `first`. Nothing may follow on another line: there a number was missing.
-    fn colour(&mut self, first: usize, expected: &str) -> Result<&'a [u8], ReadError> {
+    fn colour(&mut self, first: usize, expected: &str) -> Result<&'a [u8], FileError> {
         let rest = self.rest_of_line();
         match rest.is_empty() || self.lines.number() == first {
             true => Ok(rest),
-            false => Err(self.fail(ReadProblem::syntax(format!("{expected} and then a new line"), quoted(rest)))),
+            false => Err(self.fail(FileProblem::syntax(format!("{expected} and then a new line"), quoted(rest)))),
         }
     }
 
@@ -92,24 +92,24 @@ impl<'a> Stream<'a> {
         (0..count).all(|_| lines.next_content().is_some())
     }
 
-    fn fail(&self, problem: ReadProblem) -> ReadError {
-        ReadError::line(self.lines.number(), problem)
+    fn fail(&self, problem: FileProblem) -> FileError {
+        FileError::line(self.lines.number(), problem)
     }
 
     /// The error for a file that ends after `have` of `all` vertices or faces.
-    fn ends(&self, what: &str, have: usize, all: usize) -> ReadError {
-        self.fail(ReadProblem::truncated(format!("{all} {what}"), format!("the file ends after {have}")))
+    fn ends(&self, what: &str, have: usize, all: usize) -> FileError {
+        self.fail(FileProblem::truncated(format!("{all} {what}"), format!("the file ends after {have}")))
     }
 
-    fn count(&self, word: Option<&[u8]>) -> Result<usize, ReadError> {
+    fn count(&self, word: Option<&[u8]>) -> Result<usize, FileError> {
         const WANTED: &str = "the numbers of vertices and faces";
-        let word = word.ok_or_else(|| self.fail(ReadProblem::truncated(WANTED, "the file ends")))?;
+        let word = word.ok_or_else(|| self.fail(FileProblem::truncated(WANTED, "the file ends")))?;
         let value = integer(word).and_then(|n| u32::try_from(n).ok());
-        value.map(|n| n as usize).ok_or_else(|| self.fail(ReadProblem::syntax(WANTED, quoted(word))))
+        value.map(|n| n as usize).ok_or_else(|| self.fail(FileProblem::syntax(WANTED, quoted(word))))
     }
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
+pub(super) fn read(bytes: &[u8]) -> Result<Loaded, FileError> {
     let mut stream = Stream { lines: Lines::new(bytes), words: Words::new(b"") };
     let ([vertices, faces], extras) = header(&mut stream)?;
     let [mut of_vertices, mut of_faces] = [Tints::default(), Tints::default()];
@@ -149,7 +149,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
 
 /// The numbers of vertices and faces, and what surrounds the colours of vertices if the keyword says that they have some.
 /// The keyword may be missing, and the counts may stand on its line, or right behind it. A number of edges may follow.
-fn header(stream: &mut Stream<'_>) -> Result<([usize; 2], Option<Extras>), ReadError> {
+fn header(stream: &mut Stream<'_>) -> Result<([usize; 2], Option<Extras>), FileError> {
     let mut first = stream.next();
     let mut extras = None;
     let (keyword, number) = split_keyword(first.unwrap_or_default());
@@ -159,13 +159,13 @@ fn header(stream: &mut Stream<'_>) -> Result<([usize; 2], Option<Extras>), ReadE
             first = if number.is_empty() { stream.next() } else { Some(number) };
         }
         Some(Layout::OtherDimension) => {
-            let problem = ReadProblem::Unsupported("OFF with other than three coordinates is not read here".into());
+            let problem = FileProblem::Unsupported("OFF with other than three coordinates is not read here".into());
             return Err(stream.fail(problem));
         }
         None => {}
     }
     if first.is_some_and(|word| word.eq_ignore_ascii_case(b"BINARY")) {
-        let problem = ReadProblem::Unsupported("binary OFF is not read here; write it as ASCII OFF or PLY".into());
+        let problem = FileProblem::Unsupported("binary OFF is not read here; write it as ASCII OFF or PLY".into());
         return Err(stream.fail(problem));
     }
     let vertices = stream.count(first)?;
@@ -183,11 +183,11 @@ fn header(stream: &mut Stream<'_>) -> Result<([usize; 2], Option<Extras>), ReadE
 }
 
 /// The next vertex, of which there should be so many, and the line where it begins.
-fn vertex(stream: &mut Stream<'_>, [have, all]: [usize; 2]) -> Result<(DVec3, usize), ReadError> {
+fn vertex(stream: &mut Stream<'_>, [have, all]: [usize; 2]) -> Result<(DVec3, usize), FileError> {
     let (mut p, mut line) = (DVec3::ZERO, 0);
     for k in 0..3 {
         let word = stream.next().ok_or_else(|| stream.ends("vertices", have, all))?;
-        p[k] = number(word).ok_or_else(|| stream.fail(ReadProblem::syntax("three coordinates", quoted(word))))?;
+        p[k] = number(word).ok_or_else(|| stream.fail(FileProblem::syntax("three coordinates", quoted(word))))?;
         line = if k == 0 { stream.lines.number() } else { line };
     }
     Ok((p, line))
@@ -199,18 +199,18 @@ fn corners(
     vertices: usize,
     face: &mut Vec<u32>,
     [have, all]: [usize; 2],
-) -> Result<usize, ReadError> {
+) -> Result<usize, FileError> {
     let word = stream.next().ok_or_else(|| stream.ends("faces", have, all))?;
     let line = stream.lines.number();
     let count = integer(word).filter(|n| *n >= 0);
-    let count = count.ok_or_else(|| stream.fail(ReadProblem::syntax("a number of corners", quoted(word))))?;
+    let count = count.ok_or_else(|| stream.fail(FileProblem::syntax("a number of corners", quoted(word))))?;
     face.clear();
     for _ in 0..count {
         let word = stream.next().ok_or_else(|| stream.ends("faces", have, all))?;
-        let fail = || stream.fail(ReadProblem::syntax(format!("{count} vertex numbers"), quoted(word)));
+        let fail = || stream.fail(FileProblem::syntax(format!("{count} vertex numbers"), quoted(word)));
         let index = integer(word).ok_or_else(fail)?;
         let corner = u32::try_from(index).ok().filter(|&i| (i as usize) < vertices);
-        face.push(corner.ok_or_else(|| stream.fail(ReadProblem::vertex(index, vertices)))?);
+        face.push(corner.ok_or_else(|| stream.fail(FileProblem::vertex(index, vertices)))?);
     }
     Ok(line)
 }

@@ -4,10 +4,13 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::colour::Gathered;
-use super::error::{ReadError, ReadProblem};
+use super::error::{FileError, FileProblem};
+use super::format::Format;
+use super::loaded::{Loaded, Negative, Part};
 use super::polygon;
+use super::text::counted;
 use super::texture::Woven;
-use super::{Format, Loaded, Negative, Part, Unit};
+use super::unit::Unit;
 use crate::mesh::TriMesh;
 
 /// Bytes of a part's name that are kept.
@@ -116,7 +119,7 @@ impl Soup {
     }
 
     /// The finished mesh. All corners are in range by now.
-    pub(super) fn finish(mut self, format: Format, unit: Option<Unit>) -> Result<Loaded, ReadError> {
+    pub(super) fn finish(mut self, format: Format, unit: Option<Unit>) -> Result<Loaded, FileError> {
         self.end_part();
         if self.narrow_faces > 0 {
             self.warnings
@@ -161,11 +164,11 @@ impl Soup {
     }
 
     /// Why there is no triangle.
-    fn nothing(self) -> ReadProblem {
+    fn nothing(self) -> FileProblem {
         match (self.warnings.is_empty(), self.positions.len() + self.points) {
-            (false, _) => ReadProblem::NothingLeft(self.warnings.join("; ")),
-            (true, 0) => ReadProblem::NoTriangles,
-            (true, points) => ReadProblem::PointCloud { points },
+            (false, _) => FileProblem::NothingLeft(self.warnings.join("; ")),
+            (true, 0) => FileProblem::NoTriangles,
+            (true, points) => FileProblem::PointCloud { points },
         }
     }
 
@@ -206,16 +209,6 @@ impl Soup {
     }
 }
 
-/// `1 face`, `2 faces`, `3 meshes`, `4 vertices`.
-pub(super) fn counted(count: usize, what: &str) -> String {
-    match (count, what.strip_suffix("ex")) {
-        (1, _) => format!("1 {what}"),
-        (_, Some(stem)) => format!("{count} {stem}ices"),
-        _ if what.ends_with("sh") => format!("{count} {what}es"),
-        _ => format!("{count} {what}s"),
-    }
-}
-
 /// Vertices of formats that repeat them for every face, merged where the coordinates are equal
 /// (−0 equals 0) as they come, so that the repeated ones never take memory. The result is that of
 /// [`TriMesh::welded`].
@@ -231,7 +224,7 @@ impl Welder {
 
     /// The number of the vertex at `p`, new or known.
     #[inline]
-    pub(super) fn vertex(&mut self, p: DVec3, positions: &mut Vec<DVec3>) -> Result<u32, ReadError> {
+    pub(super) fn vertex(&mut self, p: DVec3, positions: &mut Vec<DVec3>) -> Result<u32, FileError> {
         // Adding zero turns −0 into 0.
         let key = (p + 0.0).to_array().map(f64::to_bits);
         let next = positions.len();
@@ -244,8 +237,8 @@ impl Welder {
 }
 
 /// The error for more vertices than 32 bits can number.
-pub(super) fn too_many_vertices() -> ReadError {
-    ReadProblem::TooLarge { what: "vertices", limit: u64::from(u32::MAX) }.into()
+pub(super) fn too_many_vertices() -> FileError {
+    FileProblem::TooLarge { what: "vertices", limit: u64::from(u32::MAX) }.into()
 }
 
 /// Vertices and triangles that instances (components, nodes) may unfold into.
@@ -264,11 +257,11 @@ impl Expansion {
     }
 
     /// Takes `count` vertices or triangles from the allowance.
-    pub(super) fn spend(&mut self, count: u64) -> Result<(), ReadProblem> {
+    pub(super) fn spend(&mut self, count: u64) -> Result<(), FileProblem> {
         self.left = self
             .left
             .checked_sub(count)
-            .ok_or(ReadProblem::TooLarge { what: "vertices and triangles of instances", limit: self.limit })?;
+            .ok_or(FileProblem::TooLarge { what: "vertices and triangles of instances", limit: self.limit })?;
         Ok(())
     }
 }

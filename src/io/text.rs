@@ -132,6 +132,16 @@ pub(super) fn quoted_or_end(word: Option<&[u8]>) -> String {
     word.map_or_else(|| "the end of the line".to_owned(), quoted)
 }
 
+/// `1 face`, `2 faces`, `3 meshes`, `4 vertices`.
+pub(super) fn counted(count: usize, what: &str) -> String {
+    match (count, what.strip_suffix("ex")) {
+        (1, _) => format!("1 {what}"),
+        (_, Some(stem)) => format!("{count} {stem}ices"),
+        _ if what.ends_with("sh") => format!("{count} {what}es"),
+        _ => format!("{count} {what}s"),
+    }
+}
+
 /// Text output: numbers in their shortest form that reads back as the same `f64`, gathered into large writes.
 pub(super) struct TextOut<'a> {
     out: &'a mut dyn Write,

@@ -44,6 +44,12 @@ pub fn index_in_brick(voxel: IVec3) -> usize {
     ((voxel.x & 7) | (voxel.y & 7) << 3 | (voxel.z & 7) << 6) as usize
 }
 
+/// The voxel with index `n` of a brick, seen from the brick's first voxel: the inverse of [`index_in_brick`].
+#[inline]
+pub fn voxel_in_brick(n: usize) -> IVec3 {
+    IVec3::new((n & 7) as i32, (n >> 3 & 7) as i32, (n >> 6) as i32)
+}
+
 /// The order of active bricks.
 #[inline]
 fn order(brick: &IVec3) -> (i32, i32, i32) {
@@ -51,13 +57,13 @@ fn order(brick: &IVec3) -> (i32, i32, i32) {
 }
 
 impl Bricks {
-    /// The given active bricks, sorted by (z, y, x) and without repetition; all others outside.
+    /// Bricks of which the given ones are active, sorted by (z, y, x) and without repetition; all others lie outside.
     pub fn new(active: impl IntoIterator<Item = IVec3>) -> Self {
         Self::with_classes(active, |_| false)
     }
 
-    /// The given active bricks, sorted by (z, y, x) and without repetition. `inside_after` says of
-    /// an active brick whether the inactive bricks that follow it along x are inside.
+    /// Bricks of which the given ones are active, sorted by (z, y, x) and without repetition. `inside_after` says of an active
+    /// brick whether the inactive bricks that follow it along x are inside.
     pub fn with_classes(active: impl IntoIterator<Item = IVec3>, inside_after: impl Fn(IVec3) -> bool) -> Self {
         let mut active: Vec<IVec3> = active.into_iter().collect();
         active.sort_unstable_by_key(order);
@@ -67,7 +73,7 @@ impl Bricks {
         Self { active, slots, inside_after }
     }
 
-    /// Says that the inactive brick `brick` lies inside; no effect on an active one.
+    /// Notes that the inactive brick `brick` lies inside. An active brick stays as it is.
     pub fn set_inside(&mut self, brick: IVec3) {
         self.slots.entry(brick).or_insert(Slot::Inside);
     }
@@ -96,7 +102,7 @@ impl Bricks {
         self.active.len()
     }
 
-    /// True without active bricks.
+    /// Whether no brick is active.
     pub fn is_empty(&self) -> bool {
         self.active.is_empty()
     }
@@ -116,13 +122,14 @@ pub struct Grid<T> {
 }
 
 impl<T: Copy> Grid<T> {
-    /// All active voxels set to `value`.
+    /// A grid whose active voxels all have the value `value`.
     pub fn filled(bricks: Arc<Bricks>, value: T, inside: T, outside: T) -> Self {
         let values = vec![[value; BRICK_VOXELS]; bricks.len()];
         Self { bricks, values, inside, outside }
     }
 
-    /// The value of `voxel`, wherever it lies. One hash look-up: loops go brick by brick instead.
+    /// The value of `voxel`, wherever it lies. It costs a look-up in a hash table, so loops over many voxels go brick by brick
+    /// instead.
     #[inline]
     pub fn get(&self, voxel: IVec3) -> T {
         match self.bricks.slot(brick_of(voxel)) {

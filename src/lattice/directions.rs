@@ -41,7 +41,7 @@ pub const DIRECTIONS: [Direction; 13] = [
 ];
 
 impl Direction {
-    /// Axes of u, v and depth.
+    /// The coordinate axes of u, v and depth.
     #[inline]
     pub fn axes(&self) -> [usize; 3] {
         [(self.main + 1) % 3, (self.main + 2) % 3, self.main]

@@ -1,11 +1,15 @@
-//! The lattice: where the voxels lie, which bricks of them are stored, and the 13 directions.
+//! The lattice: where the voxels lie, which bricks of them are stored, the 13 directions, and distances at the voxels.
 
 mod bricks;
 mod directions;
+mod distance_field;
+mod interpolate;
 mod sizing;
 
-pub use bricks::{BRICK, BRICK_VOXELS, Bricks, Grid, Slot, brick_of, index_in_brick};
+pub use bricks::{BRICK, BRICK_VOXELS, Bricks, Grid, Slot, brick_of, index_in_brick, voxel_in_brick};
 pub use directions::{DIRECTIONS, Direction};
+pub use distance_field::{DistanceField, DistanceUnit};
+pub use interpolate::{Interpolated, trilinear};
 
 use glam::{DVec3, IVec3};
 

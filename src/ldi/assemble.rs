@@ -3,7 +3,7 @@
 use glam::IVec3;
 use rayon::prelude::*;
 
-use super::raster::{Facet, ray_step};
+use super::raster::{ShearedTriangle, ray_step};
 use super::{Hit, Layers};
 use crate::lattice::Direction;
 
@@ -68,9 +68,9 @@ pub fn assemble(
                 let u = i64::from(part.low[0]) + i as i64;
                 for &number in &part.triangles[start..end as usize] {
                     let corners = triangles.get(number as usize)?.map(|v| direction.shear(vertices[v as usize]));
-                    let facet = Facet::new(corners)?;
-                    let depth = facet.crossing(u * step, v * step)?;
-                    *out.next()? = Hit::new(depth, number, facet.entering());
+                    let seen = ShearedTriangle::new(corners)?;
+                    let depth = seen.crossing(u * step, v * step)?;
+                    *out.next()? = Hit::new(depth, number, seen.entering());
                 }
                 start = end as usize;
             }

@@ -24,7 +24,7 @@ impl Evidence {
         Self { crossed, bounding: vec![[0; 2]; triangles], silent: vec![0; triangles], changed: Vec::new() }
     }
 
-    /// From samples of the triangles of a valid solid: how many there are of each triangle, and how many still bound
+    /// Evidence from samples of the triangles of a valid solid: how many there are of each triangle, and how many still bound
     /// the solid that is made of it.
     pub fn of_samples(samples: impl Iterator<Item = (u32, u32)>) -> Self {
         let mut evidence = Self::default();

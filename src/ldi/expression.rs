@@ -5,13 +5,13 @@
 pub enum Expression {
     /// The solid of one operand.
     Operand(usize),
-    /// Inside at least one; empty list: nothing.
+    /// All points inside at least one of these; an empty list is nothing.
     Union(Vec<Expression>),
-    /// Inside all of them; empty list: nothing.
+    /// All points inside each of these; an empty list is nothing.
     Intersection(Vec<Expression>),
-    /// Inside the first and not inside the second.
+    /// All points inside the first and not inside the second.
     Difference(Box<Expression>, Box<Expression>),
-    /// Inside exactly one of the two.
+    /// All points inside exactly one of the two.
     SymmetricDifference(Box<Expression>, Box<Expression>),
 }
 
@@ -30,6 +30,34 @@ impl Expression {
     pub fn difference(count: usize) -> Self {
         let removed = Self::Union((1..count).map(Self::Operand).collect());
         Self::Difference(Box::new(Self::Operand(0)), Box::new(removed))
+    }
+
+    /// The same expression with each operand less another one: `negative_of[n]` is the number of the operand that is taken away from
+    /// operand `n` wherever that stands. Operands without an entry, or with none, stay. This is how what a file says is to be subtracted from
+    /// its mesh ([`Loaded::negative`](crate::io::Loaded::negative)) becomes part of a boolean:
+    ///
+    /// ```
+    /// use meshwright::ldi::Expression;
+    ///
+    /// // Operand 2 holds what is to be taken away from operand 0.
+    /// let expression = Expression::union(2).less(&[Some(2), None]);
+    /// assert!(expression.evaluate(&[true, false, false]));
+    /// assert!(!expression.evaluate(&[true, false, true]));
+    /// assert!(expression.evaluate(&[true, true, true]));
+    /// ```
+    pub fn less(&self, negative_of: &[Option<usize>]) -> Self {
+        let one = |part: &Self| Box::new(part.less(negative_of));
+        let all = |parts: &[Self]| parts.iter().map(|part| part.less(negative_of)).collect();
+        match self {
+            Self::Operand(n) => match negative_of.get(*n).copied().flatten() {
+                Some(negative) => Self::Difference(Box::new(Self::Operand(*n)), Box::new(Self::Operand(negative))),
+                None => Self::Operand(*n),
+            },
+            Self::Union(parts) => Self::Union(all(parts)),
+            Self::Intersection(parts) => Self::Intersection(all(parts)),
+            Self::Difference(a, b) => Self::Difference(one(a), one(b)),
+            Self::SymmetricDifference(a, b) => Self::SymmetricDifference(one(a), one(b)),
+        }
     }
 
     /// Whether a point is inside the result, given for each operand whether it is inside that.
@@ -71,5 +99,17 @@ mod tests {
     fn empty_lists_are_nothing() {
         assert!(!Expression::union(0).evaluate(&[]));
         assert!(!Expression::intersection(0).evaluate(&[true]));
+    }
+
+    #[test]
+    fn every_use_of_an_operand_is_less_its_negative_parts() {
+        let expression = Expression::difference(3);
+        let whole = expression.less(&[Some(3), None, Some(4)]);
+        for bits in 0..32u32 {
+            let inside: Vec<bool> = (0..5).map(|n| bits >> n & 1 == 1).collect();
+            let expected = (inside[0] && !inside[3]) && !(inside[1] || (inside[2] && !inside[4]));
+            assert_eq!(whole.evaluate(&inside), expected, "{inside:?}");
+        }
+        assert_eq!(expression.less(&[None; 3]), expression);
     }
 }

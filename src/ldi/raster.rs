@@ -99,7 +99,7 @@ impl EdgeFunction {
 }
 
 /// A triangle as the rays of one direction see it.
-pub(super) struct Facet {
+pub(super) struct ShearedTriangle {
     /// Opposite to corner 0, 1 and 2.
     edges: [EdgeFunction; 3],
     per_area: f64,
@@ -108,7 +108,7 @@ pub(super) struct Facet {
     entering: bool,
 }
 
-impl Facet {
+impl ShearedTriangle {
     /// The triangle with these corners, sheared and snapped; `None` when the rays see it from the side.
     #[inline]
     pub(super) fn new(mut p: [IVec3; 3]) -> Option<Self> {
@@ -163,15 +163,15 @@ impl Window {
         if u0 > u1 || v0 > v1 {
             return;
         }
-        let Some(facet) = Facet::new(p) else { return };
+        let Some(seen) = ShearedTriangle::new(p) else { return };
         let step = self.step as i64;
         for j in v0..=v1 {
             let v = j as i64 * step;
-            let (first, last) = row(&facet.edges, v, u0, u1, step);
+            let (first, last) = row(&seen.edges, v, u0, u1, step);
             let start = (j - self.low[1]) as u32 * self.size[0] as u32;
             for i in first..=last {
                 let u = i as i64 * step;
-                hit(start + (i - self.low[0]) as u32, facet.depth(u, v), facet.entering);
+                hit(start + (i - self.low[0]) as u32, seen.depth(u, v), seen.entering);
             }
         }
     }

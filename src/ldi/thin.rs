@@ -87,13 +87,13 @@ pub fn widths(spans: &[Spans], planes: &[Plane]) -> Lengths {
 /// A place where walls or gaps are thinner than [`THIN`]. Lattice coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThinPlace {
-    /// Whether it is a gap; else a wall.
+    /// Whether the place is a gap between walls; else it is a wall.
     pub gap: bool,
-    /// The smallest coordinates of its rays' pieces.
+    /// The smallest coordinates of the pieces of rays that are too short here.
     pub min: DVec3,
-    /// The largest.
+    /// The largest coordinates of these pieces.
     pub max: DVec3,
-    /// How many pieces there are.
+    /// The number of these pieces.
     pub rays: usize,
     /// The least width, voxels.
     pub least: f64,

@@ -28,9 +28,9 @@ const SLACK: f64 = 1.0 - 1e-12;
 pub struct Closest {
     /// Number of the shape in the list that the tree was made of.
     pub id: u32,
-    /// The point, model units.
+    /// The nearest point itself, model units.
     pub point: DVec3,
-    /// Its distance, model units.
+    /// The distance of that point, model units.
     pub distance: f64,
     /// Where on the shape it lies.
     pub feature: Feature,
@@ -95,7 +95,7 @@ impl<S: Shape> ClosestTree<S> {
         self.shapes.len()
     }
 
-    /// Whether there is nothing to find.
+    /// Whether the tree has no shapes.
     pub fn is_empty(&self) -> bool {
         self.shapes.is_empty()
     }

@@ -13,12 +13,12 @@ const NONE: u32 = u32::MAX;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the triangles are not a closed oriented manifold at the edge of vertices {} and {}", edge[0], edge[1])]
 pub struct NotManifold {
-    /// Where: an edge that lacks its one opposite, or an edge at a vertex with several fans; twice the
+    /// The edge where that shows: an edge that lacks its one opposite, or an edge at a vertex with several fans; twice the
     /// same vertex for a triangle that repeats it; an edge with an index out of range.
     pub edge: [u32; 2],
 }
 
-/// The result of [`HalfEdges::compacted`].
+/// The live triangles without gaps: what [`HalfEdges::compacted`] gives.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Compacted {
     /// The triangles, in the old order, over new vertex ids.
@@ -423,7 +423,7 @@ impl HalfEdges {
     }
 }
 
-/// See [`HalfEdges::ring`].
+/// The half-edges around a vertex, one after another: what [`HalfEdges::ring`] gives.
 #[derive(Debug, Clone)]
 pub struct Ring<'a> {
     mesh: &'a HalfEdges,

@@ -22,7 +22,7 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// Of the solid that a closed, oriented mesh bounds; voids count as empty. `None` when it has no positive volume.
+    /// The properties of the solid that a closed, oriented mesh bounds; voids count as empty. `None` when it has no positive volume.
     pub fn of(mesh: &TriMesh) -> Option<Self> {
         // Near the middle of the mesh no digits are lost, however far from the origin it is.
         let bounds = mesh.bounds()?;
@@ -87,7 +87,7 @@ pub struct Overhang {
 const RESTS: f64 = 1e-6;
 
 impl Overhang {
-    /// Of a mesh whose triangles face outwards, for an angle of 0 to 90 degrees.
+    /// Measures a mesh whose triangles face outwards, for an angle of 0 to 90 degrees.
     pub fn of(mesh: &TriMesh, degrees: f64) -> Self {
         let (low, high) = mesh.bounds().map_or((0.0, 0.0), |bounds| (bounds.min.z, bounds.max.z));
         let plate = low + RESTS * (high - low);
@@ -111,16 +111,13 @@ impl Overhang {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::shapes::cuboid;
 
     /// A box from `min` to `max` turned by `turn`.
-    fn cuboid(min: DVec3, max: DVec3, turn: glam::DQuat) -> TriMesh {
-        let corner = |n: usize| {
-            let pick = |bit: usize, low: f64, high: f64| if n >> bit & 1 == 1 { high } else { low };
-            turn * DVec3::new(pick(0, min.x, max.x), pick(1, min.y, max.y), pick(2, min.z, max.z))
-        };
-        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-        TriMesh { positions: (0..8).map(corner).collect(), triangles }
+    fn turned_box(min: DVec3, max: DVec3, turn: glam::DQuat) -> TriMesh {
+        let mut mesh = cuboid(min, max);
+        mesh.positions.iter_mut().for_each(|p| *p = turn * *p);
+        mesh
     }
 
     #[test]
@@ -131,7 +128,7 @@ mod tests {
         let moment = |a: f64, b: f64| mass * (a * a + b * b) / 12.0;
         let expected = [moment(size.x, size.y), moment(size.x, size.z), moment(size.y, size.z)];
         for turn in [glam::DQuat::IDENTITY, glam::DQuat::from_rotation_arc(DVec3::Z, DVec3::new(0.6, 0.0, 0.8))] {
-            let found = MassProperties::of(&cuboid(min, max, turn)).expect("a volume");
+            let found = MassProperties::of(&turned_box(min, max, turn)).expect("a volume");
             let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-8;
             assert!(near(found.volume, mass), "{found:?}");
             let centre = turn * min.midpoint(max);
@@ -151,11 +148,12 @@ mod tests {
 
     #[test]
     fn what_rests_on_the_plate_does_not_hang_over() {
-        let flat = cuboid(DVec3::ZERO, DVec3::new(2.0, 3.0, 4.0), glam::DQuat::IDENTITY);
+        let flat = cuboid(DVec3::ZERO, DVec3::new(2.0, 3.0, 4.0));
         let found = Overhang::of(&flat, 45.0);
         assert_eq!((found.area, found.resting), (0.0, 6.0));
         // Turned by 30° about x, the lower side (2 x 3) hangs over by 60° from the vertical, the other (2 x 4) by 30°.
-        let turned = cuboid(DVec3::ZERO, DVec3::new(2.0, 3.0, 4.0), glam::DQuat::from_rotation_x(30f64.to_radians()));
+        let turned =
+            turned_box(DVec3::ZERO, DVec3::new(2.0, 3.0, 4.0), glam::DQuat::from_rotation_x(30f64.to_radians()));
         let area = |degrees: f64| Overhang::of(&turned, degrees).area;
         assert!((area(45.0) - 6.0).abs() < 1e-12 && (area(20.0) - 14.0).abs() < 1e-12, "{} {}", area(45.0), area(20.0));
         assert_eq!(area(60.0), 0.0);

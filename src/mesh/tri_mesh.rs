@@ -36,10 +36,33 @@ impl Bounds {
     }
 }
 
-/// Triangles over shared vertices, in model units. Counter-clockwise seen from outside where the
-/// orientation means anything. Nothing else is assumed: triangles may repeat, intersect,
-/// degenerate; vertices may be unused or coincide. Indices are always in range and coordinates
-/// always finite: the readers see to that.
+/// Triangles over shared vertices, in model units. They are counter-clockwise seen from outside where the
+/// orientation means anything. Nothing else is assumed of them: triangles may repeat, intersect or
+/// degenerate; vertices may be unused or coincide.
+///
+/// # Indices and coordinates
+///
+/// Both fields are public, because meshes are put together and taken apart in many places. What must hold is that
+/// every index is in range. [`TriMesh::new`] checks it, the readers of [`crate::io`] return nothing else, and the
+/// pipelines and the writers refuse a mesh that fails [`TriMesh::check`] with a typed error. The single stages rely on it:
+/// given a mesh that fails the check, they may panic.
+///
+/// A coordinate that is NaN or infinite is no error here. Readers leave out the faces at such vertices, with a warning;
+/// [`validate`](crate::mesh::validate) counts the triangles there as degenerate; the pipelines leave these out, as they do with all triangles
+/// without an area; the writers refuse the mesh and name the vertex.
+///
+/// ```
+/// use glam::DVec3;
+/// use meshwright::mesh::TriMesh;
+///
+/// let corners = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+/// let mesh = TriMesh::new(corners.clone(), vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])?;
+/// assert_eq!(mesh.corners(0), [DVec3::ZERO, DVec3::Y, DVec3::X]);
+///
+/// let error = TriMesh::new(corners, vec![[0, 2, 1], [0, 1, 4]]).unwrap_err();
+/// assert_eq!((error.triangle, error.index, error.vertices), (1, 4, 4));
+/// # Ok::<(), meshwright::mesh::IndexError>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TriMesh {
     /// Vertex positions, model units.
@@ -48,7 +71,45 @@ pub struct TriMesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// A triangle refers to a vertex that the mesh does not have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "triangle {triangle} refers to vertex {index}, which is not there: the mesh has {vertices} vertices, numbered from 0"
+)]
+pub struct IndexError {
+    /// The number of the first such triangle, from 0.
+    pub triangle: usize,
+    /// The index that is out of range.
+    pub index: u32,
+    /// How many vertices there are; every index must be below this.
+    pub vertices: usize,
+}
+
 impl TriMesh {
+    /// A mesh of these vertices and triangles, as they are. Nothing is merged, dropped or turned.
+    ///
+    /// # Errors
+    /// [`IndexError`] when a triangle refers to a vertex that is not there.
+    pub fn new(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, IndexError> {
+        let mesh = Self { positions, triangles };
+        mesh.check()?;
+        Ok(mesh)
+    }
+
+    /// Checks that every triangle refers to vertices that are there.
+    ///
+    /// # Errors
+    /// [`IndexError`] for the first triangle that does not.
+    pub fn check(&self) -> Result<(), IndexError> {
+        let vertices = self.positions.len();
+        let outside = |&index: &u32| index as usize >= vertices;
+        let first = self.triangles.iter().enumerate().find_map(|(triangle, corners)| {
+            let index = corners.iter().copied().find(outside)?;
+            Some(IndexError { triangle, index, vertices })
+        });
+        first.map_or(Ok(()), Err)
+    }
+
     /// The corners of triangle `triangle`.
     #[inline]
     pub fn corners(&self, triangle: usize) -> [DVec3; 3] {

@@ -37,7 +37,7 @@ pub struct Validity {
     pub vertices: usize,
     /// Vertices that no triangle uses.
     pub unused_vertices: usize,
-    /// Triangles, all of them.
+    /// All triangles, also degenerate ones.
     pub triangles: usize,
     /// Edges with one triangle.
     pub open_edges: usize,

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::offset::MARGIN;
-use super::{Body, MorphologyError, Remain, around};
-use crate::lattice::{BRICK_VOXELS, Grid, Lattice, Slot};
+use super::{Body, OffsetError, Remain, around};
+use crate::lattice::{BRICK_VOXELS, DistanceField, Slot};
 use crate::mesh::edges::Union;
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::Progress;
@@ -23,15 +23,16 @@ const ONE_SPACE: f64 = 1.0;
 /// region.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Centres {
-    /// The surface of it that the lattice shows, and a very small triangle at each of the points between the voxels; it
-    /// bounds nothing.
+    /// The surface of that region as far as the lattice shows it, and a very small triangle at each of the points between the
+    /// voxels. Together they bound nothing.
     pub mesh: TriMesh,
     /// For each triangle the number of the space that it bounds.
     pub spaces: Vec<u32>,
 }
 
 impl Centres {
-    /// Of the surface, closed, that the lattice shows, and its level around what lies between the voxels; `h` in model units.
+    /// Puts the closed surface that the lattice shows and the level around what lies between the voxels together; `h` in model
+    /// units.
     pub fn new(mut surface: TriMesh, between: &[Remain], h: f64) -> Self {
         for p in between.iter().map(|remain| remain.point) {
             let first = surface.positions.len() as u32;
@@ -64,7 +65,7 @@ fn join_near(sets: &mut Union, points: &[DVec3], side: f64) {
     }
 }
 
-/// In how many places the points lie; those in cubes of `side` that touch lie in one.
+/// The number of places in which the points lie. Points in cubes of `side` that touch lie in one place.
 pub fn places(remains: &[Remain], side: f64) -> usize {
     let points: Vec<DVec3> = remains.iter().map(|remain| remain.point).collect();
     let mut sets = Union::new(points.len());
@@ -106,21 +107,16 @@ impl<'a> Balls<'a> {
         self.centres.passage(ends, values, self.radius.abs())
     }
 
-    /// That distance, h, at the voxels of `own`, the distance to the solid itself: at centres it is that one, and
+    /// That distance at the voxels of `own`, the distance to the solid itself; both count in voxels. At centres it is that one, and
     /// nowhere is more than it outside of a closing, or less inside of an opening.
-    pub(super) fn field(
-        &self,
-        own: &Grid<f32>,
-        lattice: &Lattice,
-        progress: &Progress,
-    ) -> Result<Grid<f32>, MorphologyError> {
-        let reach = self.radius.abs() / lattice.h;
+    pub(super) fn field(&self, own: &DistanceField, progress: &Progress) -> Result<DistanceField, OffsetError> {
+        let reach = self.radius.abs() / own.lattice.h;
         let options = ExactOptions { band: Band::Within(reach + MARGIN), max_memory: None };
-        let far = exact(self.centres.mesh, lattice, Sign::Pseudonormal, &options, progress)?;
+        let far = exact(self.centres.mesh, &own.lattice, Sign::Pseudonormal, &options, progress)?.grid;
         let (reach, side) = (reach as f32, self.radius.signum() as f32);
         let outside = [far.outside.abs(); BRICK_VOXELS];
         let mut field = own.clone();
-        field.values.par_iter_mut().zip(own.bricks.active()).for_each(|(values, &brick)| {
+        field.grid.values.par_iter_mut().zip(own.grid.bricks.active()).for_each(|(values, &brick)| {
             let far = match far.bricks.slot(brick) {
                 Slot::Active(n) => &far.values[n as usize],
                 Slot::Inside | Slot::Outside => &outside,

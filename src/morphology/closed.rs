@@ -5,13 +5,12 @@ use rayon::prelude::*;
 
 use super::offset::MARGIN;
 use super::remains::Search;
-use super::{Balls, Body, MorphologyError, Offset, Region};
-use crate::contour::{ContourOptions, Crossing, Edge, NO_TRIANGLE, contour};
-use crate::lattice::{BRICK, Grid, Lattice};
+use super::{Balls, Body, Offset, OffsetError, Region};
+use crate::contour::{ContourOptions, Crossing, Edge, Ground, contour};
+use crate::lattice::{BRICK, DistanceField, Grid, Lattice, voxel_in_brick};
 use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::{Band, ExactOptions, Sign, exact};
-use crate::vote::voxel_in_brick;
 
 /// What a closing may fill, h, and be left out: the first step's surface is a mesh, and where it is round, its chords
 /// bring the second step off by h² / 8 r, 0.06 h at r = 2 h.
@@ -39,8 +38,7 @@ pub(super) const BESIDE: f64 = 0.6;
 const MOST_SAMPLES: usize = 64;
 
 /// The closing (for a positive radius of the balls) or opening of `original` that the balls leave. Where that changes nothing, the
-/// vertices lie on triangles of `original` and have their numbers; elsewhere those of planes, numbered after them. With a
-/// `region` nothing changes elsewhere.
+/// vertices lie on triangles of `original`, elsewhere on planes. With a `region` nothing changes elsewhere.
 ///
 /// # Errors
 /// Those of [`exact`], and a stop.
@@ -50,13 +48,13 @@ pub fn closed(
     lattice: &Lattice,
     region: Option<&Region<'_>>,
     progress: &Progress,
-) -> Result<Closed, MorphologyError> {
+) -> Result<Closed, OffsetError> {
     let h = lattice.h;
     let own = own_distance(original, balls.radius, lattice, progress)?;
-    let mut field = balls.field(&own, lattice, progress)?;
+    let mut field = balls.field(&own, progress)?;
     let within = (unchanged(balls.radius, h) / h) as f32;
     let holds = |voxel: IVec3| region.is_none_or(|region| region.holds(voxel));
-    let changed = restore(&mut field, &own, within, &holds);
+    let changed = restore(&mut field.grid, &own.grid, within, &holds);
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
     let crossing = |edge: Edge| {
         let voxels = [edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]];
@@ -64,41 +62,41 @@ pub fn closed(
         let at = |t: f64| ends[0].lerp(ends[1], t);
         let free = voxels.into_iter().any(holds);
         let stays = |t: &f64| !free || balls.at(at(*t), h).0.abs() < unchanged(balls.radius, h);
-        let before = voxels.map(|voxel| f64::from(own.get(voxel)) * h);
+        let before = voxels.map(|voxel| own.length(own.grid.get(voxel)));
         match original.passage(ends, before, 0.0).filter(stays) {
-            Some(t) => Some(Crossing { t, triangle: original.distance().at(at(t))?.triangle }),
-            None => Some(Crossing { t: balls.passage(ends)?, triangle: NO_TRIANGLE }),
+            Some(t) => Some(Crossing { t, triangle: Some(original.distance().at(at(t))?.triangle) }),
+            None => Some(Crossing { t: balls.passage(ends)?, triangle: None }),
         }
     };
-    let mut contour = contour(lattice, &field, &crossing, &ContourOptions::default(), progress)?;
+    let mut contour = contour(&field, &crossing, &ContourOptions::default(), progress)?;
     let made: Vec<usize> =
-        (0..contour.vertices.len()).filter(|&v| contour.vertices[v].triangle == NO_TRIANGLE).collect();
+        (0..contour.vertices.len()).filter(|&v| contour.vertices[v].ground == Ground::Unknown).collect();
     let planes: Vec<Plane> = made.par_iter().map(|&v| balls.tangent(contour.mesh.positions[v], h)).collect();
     progress.check()?;
-    for (&v, n) in made.iter().zip(original.mesh.triangles.len() as u32..) {
-        contour.vertices[v].triangle = n;
+    for (&v, n) in made.iter().zip(0..) {
+        contour.vertices[v].ground = Ground::Plane(n);
     }
-    let search = Search { body: original, level: 0.0, side: -balls.radius.signum(), lattice, field: &own };
+    let search = Search { body: original, level: 0.0, side: -balls.radius.signum(), lattice, field: &own.grid };
     let mut remains = search.remains(progress)?;
     remains.retain(|remain| balls.at(remain.point, h).0.abs() < unchanged(balls.radius, h));
     Ok(Closed { offset: Offset { contour, planes, remains }, changed })
 }
 
-/// A closing or opening.
+/// The surface of a closing or opening.
 pub struct Closed {
-    /// Its surface; the remains are points of the solid's own surface at walls (gaps, for an opening) that no voxel shows.
+    /// The surface itself; the remains are points of the solid's own surface at walls (gaps, for an opening) that no voxel shows.
     pub offset: Offset,
-    /// Whether it differs from the solid at any voxel.
+    /// Whether the result differs from the solid at any voxel.
     pub changed: bool,
 }
 
-/// The distance to the solid, h, as far as balls around it reach.
+/// The distance to the solid, counted in voxels, as far as balls around it reach.
 pub(super) fn own_distance(
     original: &Body<'_>,
     radius: f64,
     lattice: &Lattice,
     progress: &Progress,
-) -> Result<Grid<f32>, MorphologyError> {
+) -> Result<DistanceField, OffsetError> {
     let band = Band::Within(radius.abs() / lattice.h + MARGIN);
     Ok(exact(original.mesh, lattice, Sign::Pseudonormal, &ExactOptions { band, max_memory: None }, progress)?)
 }
@@ -120,16 +118,16 @@ fn restore(field: &mut Grid<f32>, own: &Grid<f32>, within: f32, holds: &(impl Fn
     restored.reduce(|| false, |a, b| a | b)
 }
 
-/// Which points of a triangle a ball reaches.
+/// How many points of a triangle a ball reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reached {
-    /// Points that were tried.
+    /// Number of points that were tried.
     pub tried: u32,
-    /// Points that a ball touches from outside.
+    /// Number of these that a ball touches from outside.
     pub touched: u32,
 }
 
-/// For each triangle of `body` which of its points (corners, and others about `h` apart) a ball of `radius` (model units)
+/// For each triangle of `body` how many of its points (corners, and others about `h` apart) a ball of `radius` (model units)
 /// touches from outside without meeting the solid elsewhere; from inside for a negative radius (Bærentzen §5.2: the
 /// offset point has to be at that distance). Points that are not beside the `region` count as touched.
 pub fn reached(

@@ -8,16 +8,20 @@
 //! [`canals`] lists what a closing would fill, and lets it fill only some of that.
 
 mod balls;
+mod body;
 mod canals;
 mod closed;
 mod offset;
+mod region;
 mod remains;
 mod thin;
 
 pub use balls::{Balls, Centres, places};
-pub use canals::{Canal, CanalKind, Canals, Region, canals};
+pub use body::Body;
+pub use canals::{Canal, CanalKind, Canals, canals};
 pub use closed::{Closed, Reached, closed, reached};
-pub use offset::{Body, Offset, offset};
+pub use offset::{Offset, offset};
+pub use region::Region;
 pub use remains::Remain;
 pub use thin::middles;
 
@@ -41,7 +45,7 @@ pub enum Operation {
 }
 
 impl Operation {
-    /// Offsets that it takes.
+    /// The number of offsets that the operation takes.
     pub fn offsets(self) -> u32 {
         match self {
             Self::Dilate | Self::Erode => 1,
@@ -52,7 +56,7 @@ impl Operation {
 
 /// Why there is no result.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum MorphologyError {
+pub enum OffsetError {
     /// Interrupted, or the deadline passed.
     #[error(transparent)]
     Stopped(#[from] Stopped),
@@ -61,7 +65,7 @@ pub enum MorphologyError {
     Distance(ExactError),
 }
 
-impl From<ExactError> for MorphologyError {
+impl From<ExactError> for OffsetError {
     fn from(error: ExactError) -> Self {
         match error {
             ExactError::Stopped(stopped) => Self::Stopped(stopped),

@@ -10,9 +10,8 @@ use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use super::{Body, corners};
-use crate::lattice::{BRICK, Grid, Lattice};
+use crate::lattice::{BRICK, Grid, Lattice, voxel_in_brick};
 use crate::progress::{Progress, Stopped};
-use crate::vote::voxel_in_brick;
 
 /// Half the diagonal of a cell of side 1.
 const HALF_DIAGONAL: f64 = 0.866_025_403_784_438_7;

@@ -14,15 +14,15 @@ const MOST_ON_AN_EDGE: usize = 16;
 pub struct Cleaned {
     /// The triangles that are left, over vertices merged where their coordinates are equal.
     pub mesh: TriMesh,
-    /// For each of them, its number in the input.
+    /// For each triangle that is left its number in the input.
     pub source: Vec<u32>,
-    /// For each of them, whether the input has it equally often in both orientations.
+    /// For each triangle that is left whether the input has it equally often in both orientations.
     pub unoriented: Vec<bool>,
-    /// Triangles without area or with a repeated vertex, dropped.
+    /// Number of triangles that were dropped because they have no area or a repeated vertex.
     pub degenerate: usize,
-    /// Repetitions dropped.
+    /// Number of repetitions that were dropped.
     pub duplicates: usize,
-    /// Triangles that were there in both orientations.
+    /// Number of triangles that were there in both orientations.
     pub both_sided: usize,
 }
 
@@ -113,13 +113,7 @@ fn drop_membranes(cleaned: &mut Cleaned) {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn tetrahedron() -> TriMesh {
-        TriMesh {
-            positions: vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
-            triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
-        }
-    }
+    use crate::mesh::shapes::tetrahedron;
 
     #[test]
     fn repetitions_and_flat_triangles_go_and_a_reversed_copy_marks_its_triangle() {

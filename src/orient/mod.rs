@@ -17,16 +17,16 @@ pub enum OrientMode {
     /// Make each edge-connected patch consistent and decide its side by the LDIs.
     #[default]
     Auto,
-    /// Trust the file.
+    /// Take the triangles as they are: the file is trusted.
     Keep,
 }
 
 /// What cleaning and orientation did.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct OrientReport {
-    /// Triangles without area or with a repeated vertex, dropped.
+    /// Triangles that were dropped because they have no area or a repeated vertex.
     pub degenerate_dropped: usize,
-    /// Exact repetitions of another triangle, dropped.
+    /// Triangles that were dropped because they repeat another one.
     pub duplicates_dropped: usize,
     /// Triangles that were present in both orientations; one copy was kept.
     pub both_sided: usize,
@@ -36,6 +36,6 @@ pub struct OrientReport {
     pub flipped_in_patches: usize,
     /// Patches turned over as a whole, by the vote of the rays or, where they are shells that stand as they are, by winding numbers.
     pub flipped_patches: usize,
-    /// Triangles in these patches.
+    /// Triangles in the patches that were turned over as a whole.
     pub flipped_by_rays: usize,
 }

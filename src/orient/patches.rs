@@ -1,9 +1,12 @@
 //! Consistent orientation within edge-connected patches.
 
 use super::OrientMode;
-use crate::mesh::edges::Edges;
+use crate::mesh::neighbours::{Across, Neighbours};
 
-/// The patches of a soup.
+/// A triangle that no patch has reached yet.
+const UNSEEN: u32 = u32::MAX;
+
+/// The patches of a soup: triangles that are connected through edges which exactly two of them share.
 #[derive(Debug, Clone, Default)]
 pub struct Patches {
     /// The patch of each triangle; patches are numbered by their first triangle.
@@ -20,12 +23,13 @@ pub struct Patches {
 /// triangles have no say. A patch that cannot be oriented (a Möbius strip) keeps a seam.
 /// With [`OrientMode::Keep`] the patches are found but nothing is turned over.
 pub fn orient_patches(triangles: &mut [[u32; 3]], unoriented: &[bool], mode: OrientMode) -> Patches {
-    let neighbours = neighbours(triangles);
-    let mut patches = Patches { of: vec![u32::MAX; triangles.len()], ..Patches::default() };
+    let vertices = triangles.iter().flatten().max().map_or(0, |&v| v as usize + 1);
+    let neighbours = Neighbours::new(triangles, vertices);
+    let mut patches = Patches { of: vec![UNSEEN; triangles.len()], ..Patches::default() };
     let mut flip = vec![false; triangles.len()];
     let mut members = Vec::new();
     for seed in 0..triangles.len() {
-        if patches.of[seed] != u32::MAX {
+        if patches.of[seed] != UNSEEN {
             continue;
         }
         members.clear();
@@ -35,11 +39,12 @@ pub fn orient_patches(triangles: &mut [[u32; 3]], unoriented: &[bool], mode: Ori
         while next < members.len() {
             let t = members[next] as usize;
             next += 1;
-            for &(other, same_way) in &neighbours[t] {
-                if other != u32::MAX && patches.of[other as usize] == u32::MAX {
-                    patches.of[other as usize] = patches.count as u32;
-                    flip[other as usize] = flip[t] != same_way;
-                    members.push(other);
+            for Across { triangle, turned } in beside(triangles, &neighbours, t) {
+                let other = triangle as usize;
+                if patches.of[other] == UNSEEN {
+                    patches.of[other] = patches.count as u32;
+                    flip[other] = flip[t] != turned;
+                    members.push(triangle);
                 }
             }
         }
@@ -60,30 +65,20 @@ pub fn orient_patches(triangles: &mut [[u32; 3]], unoriented: &[bool], mode: Ori
     patches
 }
 
-/// For each triangle the up to three that share an edge with it and nobody else (`u32::MAX`: none),
-/// in the order of the edges, and whether the two run along the edge the same way.
-fn neighbours(triangles: &[[u32; 3]]) -> Vec<[(u32, bool); 3]> {
-    let mut neighbours = vec![[(u32::MAX, false); 3]; triangles.len()];
-    let vertices = triangles.iter().flatten().max().map_or(0, |&v| v as usize + 1);
-    let edges = Edges::new(triangles, vertices);
-    edges.each(|edge| {
-        let mut halves = edge.halves();
-        if let (Some(a), Some(b), 2) = (halves.next(), halves.next(), edge.count()) {
-            let same_way = edges.runs_up(a) == edges.runs_up(b);
-            for (from, to) in [(a, b), (b, a)] {
-                let free = neighbours[from as usize / 3].iter_mut().find(|n| n.0 == u32::MAX);
-                if let Some(free) = free {
-                    *free = (to / 3, same_way);
-                }
-            }
-        }
+/// The neighbours of a triangle, in the order of the edges between them.
+fn beside(triangles: &[[u32; 3]], neighbours: &Neighbours, t: usize) -> impl Iterator<Item = Across> {
+    let mut edges = [0, 1, 2];
+    edges.sort_unstable_by_key(|&k| {
+        let (a, b) = (triangles[t][k], triangles[t][(k + 1) % 3]);
+        (a.min(b), a.max(b))
     });
-    neighbours
+    edges.into_iter().filter_map(move |k| neighbours.across(t as u32, k))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::edges::Edges;
 
     #[test]
     fn a_flipped_triangle_of_a_tetrahedron_is_turned_back() {

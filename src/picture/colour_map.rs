@@ -5,7 +5,7 @@
 
 use glam::{Mat3, Vec3};
 
-use super::light::Rgb;
+use super::rgb::Rgb;
 
 /// Lightness of zero, and how much darker full colour is.
 const LIGHTNESS: [f32; 2] = [0.97, 0.46];

@@ -1,6 +1,7 @@
 //! Numbers and words in a picture: a font of 5 x 7 dots, enlarged.
 
-use super::{Image, letters};
+use super::image::Image;
+use super::letters;
 
 /// Dots across and down.
 const DOTS: [u32; 2] = [5, 7];

@@ -1,6 +1,7 @@
 //! A legend in a corner of a picture: patches of colour and what they mean.
 
-use super::{Image, digits};
+use super::digits;
+use super::image::Image;
 use crate::io::LegendEntry;
 
 /// Dots of the font between what stands beside each other, and around all.

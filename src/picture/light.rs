@@ -1,47 +1,10 @@
-//! Colours and light.
-
-use std::ops::{Add, Mul};
+//! How a surface looks in the light.
 
 use glam::Vec3;
 
+use super::rgb::Rgb;
 use super::scene::Scene;
 use super::sight::{Hit, weights};
-
-/// A colour in linear light.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rgb(Vec3);
-
-impl Rgb {
-    pub(super) const BLACK: Self = Self(Vec3::ZERO);
-    pub(super) const WHITE: Self = Self(Vec3::ONE);
-
-    /// From linear red, green and blue, 0 to 1.
-    pub(super) const fn new(r: f32, g: f32, b: f32) -> Self {
-        Self(Vec3::new(r, g, b))
-    }
-
-    pub(super) fn to_srgb(self) -> [u8; 3] {
-        self.0.to_array().map(|x| {
-            let x = x.clamp(0.0, 1.0);
-            let curved = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
-            (curved * 255.0 + 0.5) as u8
-        })
-    }
-}
-
-impl Add for Rgb {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self(self.0 + other.0)
-    }
-}
-
-impl Mul<f32> for Rgb {
-    type Output = Self;
-    fn mul(self, by: f32) -> Self {
-        Self(self.0 * by)
-    }
-}
 
 /// Front sides.
 const FRONT: Vec3 = Vec3::new(0.52, 0.60, 0.70);
@@ -75,7 +38,7 @@ pub(super) fn shade(scene: &Scene, hit: Hit, [x, y]: [f32; 2], darkness: f32) ->
     let diffuse = (lit(KEY) + lit(FILL)) * (0.45 + 0.55 * open) + sky * open;
     let half = (KEY.0.normalize() + Vec3::Z).normalize();
     let gloss = 0.10 * n.dot(half).max(0.0).powi(40) * open;
-    Rgb(base * diffuse + Vec3::splat(gloss))
+    Rgb::of(base * diffuse + Vec3::splat(gloss))
 }
 
 /// The front side's own colour at a visible point.

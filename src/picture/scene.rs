@@ -4,8 +4,8 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::camera::Camera;
-use super::lines::{Line, Style};
-use super::{EdgeDrawing, Painted, RenderOptions};
+use super::line::{Line, Style};
+use super::options::{EdgeDrawing, Painted, RenderOptions};
 use crate::io::{Colours, Rgba, linear_from_srgb};
 use crate::mesh::edges::{Edge, Edges, copies};
 use crate::mesh::intersecting_triangles;

@@ -5,8 +5,10 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::colour_map::colour;
-use super::light::Rgb;
-use super::{BAND, Image, RenderError, Sample, check_size, digits};
+use super::digits;
+use super::image::Image;
+use super::options::{BAND, RenderError, check_size};
+use super::rgb::{Rgb, Sample};
 use crate::mesh::Bounds;
 use crate::progress::Progress;
 

@@ -1,6 +1,9 @@
 use glam::DVec3;
 
 use super::*;
+use crate::io::Colours;
+use crate::mesh::TriMesh;
+use crate::progress::{Progress, Stopped};
 
 fn cube(low: DVec3) -> TriMesh {
     let corner = |i: u32| low + DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64);

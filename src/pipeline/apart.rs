@@ -6,7 +6,6 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
-use super::prepare::Soup;
 use super::{Options, Precision, TriangleSource};
 use crate::fit::{SimpleSource, rounded, simplified_source};
 use crate::ldi::{Expression, Operands};
@@ -14,6 +13,7 @@ use crate::mesh::TriMesh;
 use crate::mesh::edges::Union;
 use crate::progress::{Progress, Stopped};
 use crate::shells::{Contacts, Fate, Shell, Shells, StandingOptions, contacts, shells, standing};
+use crate::survey::Soup;
 
 /// Shells of the operands that stayed as they are, without any voxel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
@@ -179,8 +179,8 @@ impl Apart {
     pub(super) fn surface(
         &self,
         soup: &Soup,
-        operands: &[TriMesh],
-        options: &Options,
+        operands: &[&TriMesh],
+        (options, classes): (&Options, &[Vec<u32>]),
         h: f64,
         progress: &Progress,
     ) -> Result<Standing, Stopped> {
@@ -197,7 +197,7 @@ impl Apart {
         }
         let tolerance = options.fit.map_or(0.0, |fit| fit.kept_tolerance);
         match tolerance > 0.0 {
-            true => standing.simplified(soup, &kept, options, h, progress),
+            true => standing.simplified(soup.classes(classes), &kept, options, h, progress),
             false => Ok(standing),
         }
     }
@@ -281,14 +281,13 @@ impl Standing {
     /// The same with flat parts simplified, where that leaves a valid solid.
     fn simplified(
         self,
-        soup: &Soup,
+        classes: Vec<u32>,
         kept: &[(u32, bool)],
         options: &Options,
         h: f64,
         progress: &Progress,
     ) -> Result<Self, Stopped> {
         let Some(fit) = &options.fit else { return Ok(self) };
-        let classes = soup.classes(&options.classes);
         let classes = if classes.is_empty() { classes } else { kept.iter().map(|k| classes[k.0 as usize]).collect() };
         match simplified_source(&self.mesh, classes, h, fit, progress)? {
             None => Ok(self),

@@ -3,13 +3,14 @@
 use serde::Serialize;
 
 use super::frame::Frame;
-use super::morphology::{Run, checked_voxel, usable};
+use super::morphology::plan_offsets;
+use super::offsets::{Job, checked_voxel, usable};
 use super::plan::Offsets;
-use super::{Error, MorphologyOptions, Options, Outcome, boolean, kind, stages};
-use crate::ldi::Expression;
-use crate::mesh::TriMesh;
-use crate::morphology::{self, Balls, Body, Canal, Operation};
-use crate::progress::Progress;
+use super::stages::Stages;
+use super::{Changed, MorphologyError, Plan, Report, StageTime, SurfaceOptions};
+use crate::mesh::{Solid, TriMesh};
+use crate::morphology::{self, Balls, Body, Canal, OffsetError};
+use crate::progress::{Progress, Stopped};
 
 /// Options of [`canals`].
 #[derive(Debug, Clone, PartialEq)]
@@ -18,8 +19,8 @@ pub struct CanalOptions {
     pub max_diameter: f64,
     /// Which of them are filled.
     pub remove: Remove,
-    /// How the operand becomes a solid first, and the voxel size.
-    pub solid: Options,
+    /// How the new surface is made.
+    pub surface: SurfaceOptions,
 }
 
 /// Which canals are filled.
@@ -46,65 +47,101 @@ pub struct CanalReport {
     pub removed: Vec<u32>,
 }
 
-/// The solid, without the canals that were to be filled, and what there is to say of its canals.
+/// The canals of a solid.
 #[derive(Debug, Clone)]
 pub struct CanalOutcome {
-    /// The solid; its report has the list.
-    pub outcome: Outcome,
-    /// For each triangle of the solid the number of the canal that it bounds, 0 for none; after a removal all 0.
+    /// The list.
+    pub report: CanalReport,
+    /// For each triangle of the solid the number of the canal that it bounds, 0 for none.
     pub canal_of: Vec<u32>,
+    /// The solid without the canals that were to be filled; `None` when there was none to fill.
+    pub filled: Option<Changed>,
+    /// Wall-clock time of each stage, in order.
+    pub stages: Vec<StageTime>,
 }
 
-/// Repairs `input` and lists the canals that a closing would fill; fills those that were asked for, and leaves the rest of
+/// Why there is no list of canals.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CanalError {
+    /// The closing that finds them gave nothing.
+    #[error(transparent)]
+    Closing(#[from] MorphologyError),
+    /// A canal was to be filled that is not in the list.
+    #[error("there is no canal {number}: {count} {} found", if *count == 1 { "was" } else { "were" })]
+    Missing {
+        /// The number that was given.
+        number: u32,
+        /// Canals found.
+        count: u32,
+    },
+}
+
+/// Lists the canals of a solid that a closing would fill; fills those that were asked for, and leaves the rest of
 /// the surface as it was.
 ///
 /// # Errors
-/// Those of [`boolean`]; [`Error::VoxelSize`] for a diameter that the lattice cannot hold; [`Error::MissingCanal`].
-pub fn canals(input: &TriMesh, options: &CanalOptions, progress: &Progress) -> Result<CanalOutcome, Error> {
+/// See [`CanalError`].
+pub fn canals(solid: &Solid, options: &CanalOptions, progress: &Progress) -> Result<CanalOutcome, CanalError> {
     let radius = usable(options.max_diameter / 2.0)?;
-    let frame = Frame::of(std::slice::from_ref(input), &options.solid);
-    let input = &frame.local(std::slice::from_ref(input))[0];
-    let h = checked_voxel(input, &options.solid, Offsets { count: 2, radius, thin: false })?;
-    let solid = boolean(std::slice::from_ref(input), &Expression::Operand(0), &options.solid, progress)?;
-    let closing = MorphologyOptions { operation: Operation::Close, radius, mitre: None, solid: options.solid.clone() };
-    let mut stages = stages::Stages::new(progress);
-    let run = Run { solid: &solid.mesh, h, options: &closing, progress };
+    let frame = Frame::of(&[solid], &options.surface);
+    let local = frame.local(solid);
+    let h = checked_voxel(&local, &options.surface, offsets(radius))?;
+    let mut stages = Stages::new(progress);
+    let job = Job { solid: &local, h, surface: &options.surface, progress };
 
-    let body = Body::new(&solid.mesh, None);
-    let centres = run.there(&body, radius, &mut stages)?;
+    let body = Body::new(&local, None);
+    let centres = job.there(&body, radius, &mut stages)?;
     let balls = Balls::new(&centres, radius);
     stages.begin("canals")?;
-    let lattice = run.lattice(0.0)?;
-    let canals = morphology::canals(&body, (&balls, &centres), &lattice, progress).map_err(|e| run.error(e))?;
-    let removed = chosen(&options.remove, canals.list.len() as u32)?;
-    let (mut outcome, canal_of) = if removed.is_empty() {
-        let canal_of = canals.walls(&solid.mesh, &lattice);
-        let mut outcome = solid.clone();
-        outcome.report.stages.extend(stages.finish());
-        (outcome, canal_of)
+    let lattice = job.lattice(0.0)?;
+    let mut found = morphology::canals(&body, (&balls, &centres), &lattice, progress)?;
+    let removed = chosen(&options.remove, found.list.len() as u32)?;
+    let canal_of = found.walls(&local, &lattice);
+    let filled = if removed.is_empty() {
+        None
     } else {
-        let region = canals.region(|number| removed.contains(&number));
-        let made = run.back(&body, &balls, radius, Some(&region), &mut stages)?;
-        let outcome = run.finish(&solid, made, stages);
-        let canal_of = vec![0; outcome.mesh.triangles.len()];
-        (outcome, canal_of)
+        let region = found.region(|number| removed.contains(&number));
+        let made = job.back(&body, &balls, radius, Some(&region), &mut stages)?;
+        Some(job.finish(made, (solid, &frame), Report::default(), Stages::new(progress))?)
     };
-    outcome.report.canals = Some(CanalReport {
-        max_diameter: options.max_diameter,
-        canals: canals.list,
-        roundings: canals.roundings,
-        removed,
-    });
-    Ok(CanalOutcome { outcome: frame.global(kind::counted(outcome, std::slice::from_ref(input))), canal_of })
+    found.list.iter_mut().for_each(|canal| frame.place(&mut canal.position));
+    let (max_diameter, roundings) = (options.max_diameter, found.roundings);
+    let report = CanalReport { max_diameter, canals: found.list, roundings, removed };
+    Ok(CanalOutcome { report, canal_of, filled, stages: stages.finish() })
+}
+
+/// What [`canals`] would cost for a solid that is about where `mesh` is.
+///
+/// # Errors
+/// Those of [`canals`] that come before anything is made.
+pub fn plan_canals(mesh: &TriMesh, options: &CanalOptions) -> Result<Plan, CanalError> {
+    let radius = usable(options.max_diameter / 2.0)?;
+    Ok(plan_offsets(mesh, &options.surface, offsets(radius))?)
+}
+
+fn offsets(radius: f64) -> Offsets {
+    Offsets { count: 2, radius, thin: false }
+}
+
+impl From<Stopped> for CanalError {
+    fn from(stopped: Stopped) -> Self {
+        Self::Closing(stopped.into())
+    }
+}
+
+impl From<OffsetError> for CanalError {
+    fn from(error: OffsetError) -> Self {
+        Self::Closing(error.into())
+    }
 }
 
 /// The numbers that are meant, of `count`.
-fn chosen(remove: &Remove, count: u32) -> Result<Vec<u32>, Error> {
+fn chosen(remove: &Remove, count: u32) -> Result<Vec<u32>, CanalError> {
     match remove {
         Remove::None => Ok(Vec::new()),
         Remove::All => Ok((1..=count).collect()),
         Remove::These(numbers) => match numbers.iter().find(|&&number| number == 0 || number > count) {
-            Some(&number) => Err(Error::MissingCanal { number, count }),
+            Some(&number) => Err(CanalError::Missing { number, count }),
             None => Ok((1..=count).filter(|number| numbers.contains(number)).collect()),
         },
     }

@@ -2,39 +2,38 @@
 
 use rayon::prelude::*;
 
-use super::{Outcome, TriangleSource};
+use super::{Operand, TriangleSource};
 use crate::io::{Colours, Rgba};
 use crate::mesh::{ClosestTree, TriMesh};
 
 /// What closes a hole in a mesh with colours.
 const CLOSED: Rgba = [200, 200, 200, 255];
 
-/// A number for each triangle, the same for triangles of one colour, for
-/// [`Options::classes`](super::Options::classes). Nothing for colours that vary within triangles.
-pub fn classes(colours: Option<&Colours>) -> Vec<u32> {
+/// A number for each triangle, the same for triangles of one colour. Nothing for colours that vary within triangles.
+pub(super) fn classes(colours: Option<&Colours>) -> Vec<u32> {
     match colours {
         Some(Colours::Faces(list)) => list.iter().map(|&colour| u32::from_le_bytes(colour)).collect(),
         _ => Vec::new(),
     }
 }
 
-/// The colours of the result, from those of the operands; `None` when no operand has any. What closes a
+/// The colours of a result, from those of the operands; `None` when no operand has any. What closes a
 /// hole, and what comes from an operand without colours, is grey. The result has one colour for
 /// each triangle where the operands have.
-pub fn carry_colours(outcome: &Outcome, operands: &[(&TriMesh, Option<&Colours>)]) -> Option<Colours> {
-    if operands.iter().all(|(_, colours)| colours.is_none()) {
+pub fn carry_colours(mesh: &TriMesh, sources: &[TriangleSource], operands: &[Operand<'_>]) -> Option<Colours> {
+    if operands.iter().all(|operand| operand.colours.is_none()) {
         return None;
     }
-    let of = |operand: u32| operands.get(operand as usize).and_then(|&(mesh, colours)| Some((mesh, colours?)));
-    let by_face = operands.iter().all(|(_, colours)| matches!(colours, None | Some(Colours::Faces(_))));
-    let corners = |t: usize| match outcome.sources[t] {
+    let of = |operand: u32| operands.get(operand as usize).and_then(|operand| Some((operand.mesh, operand.colours?)));
+    let by_face = operands.iter().all(|operand| matches!(operand.colours, None | Some(Colours::Faces(_))));
+    let corners = |t: usize| match sources[t] {
         TriangleSource::Closed => [CLOSED; 3],
-        TriangleSource::Operand { operand, triangle } => of(operand).map_or([CLOSED; 3], |(mesh, colours)| {
-            let source = mesh.corners(triangle as usize);
-            outcome.mesh.corners(t).map(|p| colours.at(mesh, triangle as usize, weights(source, p)))
+        TriangleSource::Operand { operand, triangle } => of(operand).map_or([CLOSED; 3], |(own, colours)| {
+            let source = own.corners(triangle as usize);
+            mesh.corners(t).map(|p| colours.at(own, triangle as usize, weights(source, p)))
         }),
     };
-    let all: Vec<[Rgba; 3]> = (0..outcome.mesh.triangles.len()).into_par_iter().map(corners).collect();
+    let all: Vec<[Rgba; 3]> = (0..mesh.triangles.len()).into_par_iter().map(corners).collect();
     Some(if by_face { Colours::Faces(all.iter().map(|c| c[0]).collect()) } else { Colours::Corners(all) })
 }
 

@@ -3,12 +3,12 @@
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
-use super::kind::counted;
-use super::prepare::Soup;
-use super::{Error, Outcome, Report, Topology, TriangleSource};
+use super::{BooleanError, Draft, NothingEnclosed, Operand, Outcome, Report, Topology, TriangleSource};
 use crate::ldi::Operands;
 use crate::mesh::TriMesh;
+use crate::progress::Progress;
 use crate::shells::{Shell, Shells, shells};
+use crate::survey::Soup;
 
 /// A surface that voxels made and no operand asked for is a crumb when it encloses less than this, h³: two voxels each way. Of the
 /// crumbs of the data set, 17 in lion and beetle, the largest has 4.7 h³.
@@ -42,7 +42,7 @@ impl Dropped {
 
 /// What was made of a soup with voxels of `h`, without crumbs. The largest piece of every closed shell of the soup, and of one with
 /// small holes, is none; nor is the largest piece of all. Where crumbs are much of the volume, all stay.
-pub(super) fn without_crumbs(made: &mut Outcome, soup: &Soup, h: f64) {
+pub(super) fn without_crumbs(made: &mut Draft, soup: &Soup, h: f64) {
     let found = shells_of(&made.mesh);
     if found.list.iter().all(|shell| is_large(shell, h)) {
         return;
@@ -82,24 +82,28 @@ pub(super) fn without_made_crumbs(mesh: &mut TriMesh, own: &mut Vec<Option<u32>>
 }
 
 /// The outcome without closed surfaces that enclose less than `least`, cubic model units: bodies are gone, voids are filled. Besides,
-/// the numbers that its triangles had. `operands`: those that its sources name; without them no triangle counts as kept.
+/// the numbers that its triangles had. `operands`: those that its sources name.
 ///
 /// # Errors
-/// [`Error::NothingEnclosed`] when all enclose less.
-pub fn drop_smaller(mut outcome: Outcome, operands: &[TriMesh], least: f64) -> Result<(Outcome, Vec<usize>), Error> {
-    let found = shells_of(&outcome.mesh);
+/// [`NothingEnclosed::AllSmaller`] when all enclose less.
+pub fn drop_smaller<'a>(
+    outcome: Outcome,
+    operands: impl IntoIterator<Item: Into<Operand<'a>>>,
+    least: f64,
+    progress: &Progress,
+) -> Result<(Outcome, Vec<usize>), BooleanError> {
+    let operands: Vec<Operand<'_>> = operands.into_iter().map(Into::into).collect();
+    let meshes: Vec<&TriMesh> = operands.iter().map(|operand| operand.mesh).collect();
+    let mut draft = outcome.into_draft();
+    let found = shells_of(&draft.mesh);
     let stays: Vec<bool> = found.list.iter().map(|shell| shell.volume.abs() >= least).collect();
     if !stays.contains(&true) {
         let largest = found.list.iter().map(|shell| shell.volume.abs()).fold(0.0, f64::max);
-        let reason = format!(
-            "all {} closed surfaces enclose less than {least}, the largest {largest}; a smaller limit leaves something",
-            found.list.len()
-        );
-        return Err(Error::NothingEnclosed { reason });
+        return Err(NothingEnclosed::AllSmaller { surfaces: found.list.len(), least, largest }.into());
     }
     let left = (0..found.of.len()).filter(|&t| stays[found.of[t] as usize]).collect();
-    outcome.report.smaller = sweep(&mut outcome, &found, stays);
-    Ok((counted(outcome, operands), left))
+    draft.report.smaller = sweep(&mut draft, &found, stays);
+    Ok((draft.counted(&meshes).judged(&operands, progress)?, left))
 }
 
 fn shells_of(mesh: &TriMesh) -> Shells {
@@ -110,7 +114,7 @@ fn is_large(shell: &Shell, h: f64) -> bool {
     shell.volume.abs() >= CRUMB * h.powi(3)
 }
 
-fn sweep(outcome: &mut Outcome, found: &Shells, stays: Vec<bool>) -> Dropped {
+fn sweep(outcome: &mut Draft, found: &Shells, stays: Vec<bool>) -> Dropped {
     let gone = found.list.iter().zip(&stays).filter(|(_, stays)| !**stays).map(|(shell, _)| shell);
     count_out(&mut outcome.report, gone);
     let dropped = take(&mut outcome.mesh, &mut outcome.sources, found, stays);
@@ -145,17 +149,9 @@ fn take<T: Copy>(mesh: &mut TriMesh, of_triangles: &mut Vec<T>, found: &Shells, 
     if dropped.surfaces == 0 {
         return dropped;
     }
-    let kept: Vec<usize> = (0..mesh.triangles.len()).filter(|&t| stays[found.of[t] as usize]).collect();
-    *of_triangles = kept.iter().map(|&t| of_triangles[t]).collect();
-    let triangles: Vec<[u32; 3]> = kept.iter().map(|&t| mesh.triangles[t]).collect();
-    let mut number = vec![u32::MAX; mesh.positions.len()];
-    triangles.iter().flatten().for_each(|&v| number[v as usize] = 0);
-    let mut positions = Vec::new();
-    for (v, number) in number.iter_mut().enumerate().filter(|(_, number)| **number == 0) {
-        *number = positions.len() as u32;
-        positions.push(mesh.positions[v]);
-    }
-    mesh.positions = positions;
-    mesh.triangles = triangles.into_iter().map(|t| t.map(|v| number[v as usize])).collect();
+    let triangles = 0..mesh.triangles.len() as u32;
+    let kept: Vec<u32> = triangles.filter(|&t| stays[found.of[t as usize] as usize]).collect();
+    *of_triangles = kept.iter().map(|&t| of_triangles[t as usize]).collect();
+    *mesh = mesh.submesh(&kept).mesh;
     dropped
 }

@@ -4,19 +4,22 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::backend::{self, PrismError};
 use super::frame::Frame;
+use super::nothing::refuse_scattered;
 use super::plan::{BASE_BYTES, Input};
-use super::{Backend, BackendReport, Error, StageTime, VoxelSize, prepare, solid, stages};
+use super::stages::Stages;
+use super::{LatticeError, LimitError, NothingEnclosed, StageTime, VoxelSize, sizing};
+use crate::backend::{self, Backend, BackendReport, PrismError};
 use crate::digits;
-use crate::lattice::{BRICK, Grid, Lattice, Slot};
-use crate::ldi::{Expression, MAX_VOXELS, Spans, ldis, spans};
+use crate::lattice::{BRICK, DistanceField, Lattice, Slot};
+use crate::ldi::{Expression, MAX_VOXELS};
 use crate::mesh::TriMesh;
 use crate::orient::{OrientMode, OrientReport};
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::{self, Band, ExactError, ExactOptions, Sign};
 use crate::sdf::{self, Levels, LevelsError, RobustOptions, characteristics, levels_memory};
-use crate::vote::{Jury, VoteReport, VoteRule, Winding, doubts, vote_near_surface};
+use crate::survey::{Cast, Soup, SoupError, Survey};
+use crate::vote::{VoteReport, VoteRule, doubts};
 
 /// Bytes per h² of surface and per triangle that are there besides the field, for each way to the sides.
 const VOTES_BYTES: [f64; 2] = [190.0, 540.0];
@@ -94,10 +97,8 @@ impl DistanceOptions {
 /// A field and how it came about.
 #[derive(Debug, Clone)]
 pub struct DistanceOutcome {
-    /// Signed distance in h, negative inside.
-    pub field: Grid<f32>,
-    /// The lattice, which reaches as far around the mesh as the band.
-    pub lattice: Lattice,
+    /// The signed distance, on a lattice that reaches as far around the mesh as the band.
+    pub field: DistanceField,
     /// What was found and done.
     pub report: DistanceReport,
 }
@@ -146,8 +147,42 @@ pub struct DistancePlan {
     pub seconds: f64,
 }
 
+/// Why there is no field.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DistanceError {
+    /// Interrupted, or the deadline passed.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// There is no triangle with an area.
+    #[error("there is no triangle with an area")]
+    Empty,
+    /// The voxel size, or the band, cannot be used with these coordinates.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// More memory would be needed than allowed.
+    #[error(transparent)]
+    Limit(#[from] LimitError),
+    /// The distance could not be found over this lattice.
+    #[error(transparent)]
+    Exact(ExactError),
+    /// There is no memory for the outlines of the levels.
+    #[error(transparent)]
+    Levels(LevelsError),
+    /// The votes find no inside.
+    #[error(transparent)]
+    Nothing(#[from] NothingEnclosed),
+    /// The graphics processor was asked for and cannot do it.
+    #[error("{reason}")]
+    Device {
+        /// One sentence: why.
+        reason: String,
+        /// What to try.
+        hint: String,
+    },
+}
+
 /// What [`distance`] would cost.
-pub fn plan_distance(input: &TriMesh, options: &DistanceOptions) -> Result<DistancePlan, Error> {
+pub fn plan_distance(input: &TriMesh, options: &DistanceOptions) -> Result<DistancePlan, DistanceError> {
     let (lattice, band) = place(input, options)?;
     Ok(plan(input, &lattice, band, options))
 }
@@ -155,16 +190,20 @@ pub fn plan_distance(input: &TriMesh, options: &DistanceOptions) -> Result<Dista
 /// The signed distance to one mesh. All its shells together are one solid.
 ///
 /// # Errors
-/// See [`Error`].
-pub fn distance(input: &TriMesh, options: &DistanceOptions, progress: &Progress) -> Result<DistanceOutcome, Error> {
+/// See [`DistanceError`].
+pub fn distance(
+    input: &TriMesh,
+    options: &DistanceOptions,
+    progress: &Progress,
+) -> Result<DistanceOutcome, DistanceError> {
     let frame = input.bounds().map_or_else(Frame::default, |bounds| Frame::around(&bounds));
-    let input = &frame.local(std::slice::from_ref(input))[0];
+    let input = &*frame.local(input);
     let (lattice, band) = place(input, options)?;
     let needed = plan(input, &lattice, band, options).memory;
     if let Some(allowed) = options.max_memory.filter(|&allowed| needed > allowed) {
-        return Err(Error::Memory { needed, allowed, voxel_that_fits: None });
+        return Err(LimitError::Memory { needed, allowed, voxel_that_fits: None }.into());
     }
-    let mut stages = stages::Stages::new(progress);
+    let mut stages = Stages::new(progress);
     let run = Run { lattice, band, options, progress };
     let mut report = DistanceReport::default();
     let field = match (options.method, options.sign) {
@@ -185,27 +224,22 @@ pub fn distance(input: &TriMesh, options: &DistanceOptions, progress: &Progress)
         _ => run.of_soup(input, &mut stages, &mut report)?,
     };
     report.stages = stages.finish();
-    let mut outcome = DistanceOutcome { field, lattice: frame.global_lattice(lattice), report };
+    let mut outcome =
+        DistanceOutcome { field: DistanceField { lattice: frame.global_lattice(lattice), ..field }, report };
     outcome.report.vote.iter_mut().for_each(|vote| frame.votes(vote));
     outcome.describe(band);
     Ok(outcome)
 }
 
 /// The lattice, grown by the band, and the band in h.
-fn place(input: &TriMesh, options: &DistanceOptions) -> Result<(Lattice, Band), Error> {
-    let mut lattice = prepare::lattice(&prepare::bounds(std::slice::from_ref(input))?, options.voxel)?;
+fn place(input: &TriMesh, options: &DistanceOptions) -> Result<(Lattice, Band), DistanceError> {
+    let mut lattice = sizing::lattice(&sizing::bounds([input]).map_err(|_| DistanceError::Empty)?, options.voxel)?;
     let Some(length) = options.band else { return Ok((lattice, Band::Full)) };
     let band = length / lattice.h;
     let longest = f64::from(lattice.dims.max_element());
     if !(band > 0.0 && longest + 2.0 * band + 2.0 < f64::from(MAX_VOXELS)) {
-        let reason = format!(
-            "a band of {} around the mesh makes a lattice of {} voxels along a side, and at most {} are possible: \
-             use a narrower band, `full`, or a larger voxel",
-            digits::number(length),
-            digits::number(longest + 2.0 * band),
-            digits::count(MAX_VOXELS as usize)
-        );
-        return Err(Error::VoxelSize { reason });
+        let along = longest + 2.0 * band;
+        return Err(LatticeError::WideBand { band: digits::number(length), along, or: " `full`," }.into());
     }
     let room = band.ceil() as i32;
     lattice.origin -= DVec3::splat(f64::from(room) * lattice.h);
@@ -220,7 +254,7 @@ fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOption
     };
     let all = lattice.dims.as_dvec3().element_product();
     let (mut memory, mut seconds) = (BASE_BYTES + exact.memory as f64, exact.seconds);
-    let surface = Input::of(std::slice::from_ref(input));
+    let surface = Input::of(&[input]);
     let (cells, triangles, voxels) = (surface.cells(lattice), input.triangles.len() as f64, exact.voxels as f64);
     if options.votes() {
         seconds += surface.votes_seconds(lattice);
@@ -251,18 +285,31 @@ fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOption
     }
 }
 
-fn refusal(error: ExactError) -> Error {
-    match error {
-        ExactError::Stopped(stopped) => stopped.into(),
-        ExactError::Empty => Error::Empty { operand: 0 },
-        other => Error::VoxelSize { reason: other.to_string() },
+impl From<ExactError> for DistanceError {
+    fn from(error: ExactError) -> Self {
+        match error {
+            ExactError::Stopped(stopped) => Self::Stopped(stopped),
+            ExactError::Empty => Self::Empty,
+            other => Self::Exact(other),
+        }
     }
 }
 
-fn no_levels(error: LevelsError) -> Error {
-    match error {
-        LevelsError::Stopped(stopped) => stopped.into(),
-        LevelsError::Memory { .. } => Error::NoRoom { reason: error.to_string() },
+impl From<LevelsError> for DistanceError {
+    fn from(error: LevelsError) -> Self {
+        match error {
+            LevelsError::Stopped(stopped) => Self::Stopped(stopped),
+            other => Self::Levels(other),
+        }
+    }
+}
+
+impl From<SoupError> for DistanceError {
+    fn from(error: SoupError) -> Self {
+        match error {
+            SoupError::Stopped(stopped) => Self::Stopped(stopped),
+            SoupError::Empty { .. } => Self::Empty,
+        }
     }
 }
 
@@ -275,22 +322,22 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<Grid<f32>, Error> {
+    fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<DistanceField, DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
-        exact::exact(mesh, &self.lattice, sign, &options, self.progress).map_err(refusal)
+        Ok(exact::exact(mesh, &self.lattice, sign, &options, self.progress)?)
     }
 
-    fn characteristics(&self, mesh: &TriMesh) -> Result<Grid<f32>, Error> {
+    fn characteristics(&self, mesh: &TriMesh) -> Result<DistanceField, DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
-        characteristics::characteristics(mesh, &self.lattice, &options, self.progress).map_err(refusal)
+        Ok(characteristics::characteristics(mesh, &self.lattice, &options, self.progress)?)
     }
 
-    fn prism(&self, mesh: &TriMesh) -> Result<(Grid<f32>, BackendReport), Error> {
+    fn prism(&self, mesh: &TriMesh) -> Result<(DistanceField, BackendReport), DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
         let made = backend::prism(mesh, &self.lattice, &options, self.options.backend, self.progress);
         made.map_err(|error| match error {
-            PrismError::Field(error) => refusal(error),
-            PrismError::Gpu { reason, hint } => Error::Gpu { reason, hint },
+            PrismError::Field(error) => error.into(),
+            PrismError::Gpu { reason, hint } => DistanceError::Device { reason, hint },
         })
     }
 
@@ -298,68 +345,63 @@ impl Run<'_> {
     fn of_soup(
         &self,
         input: &TriMesh,
-        stages: &mut stages::Stages<'_>,
+        stages: &mut Stages<'_>,
         report: &mut DistanceReport,
-    ) -> Result<Grid<f32>, Error> {
+    ) -> Result<DistanceField, DistanceError> {
         let (progress, orient, lattice) = (self.progress, self.options.orient, &self.lattice);
         stages.begin("orient")?;
-        let mut soup = prepare::prepare(std::slice::from_ref(input), orient, progress)?;
+        let soup = Soup::of(&[input], orient, progress)?;
         stages.begin("ldi")?;
-        let mut layers = ldis(&soup.mesh, lattice, 1, progress)?;
-        soup.turn_patches(&mut layers, orient, progress)?;
-        report.orient = soup.reports.first().cloned();
+        let mut cast = Cast::on_cpu(soup, lattice, orient, progress)?;
+        report.orient = cast.soup.reports.first().cloned();
         let expression = Expression::Operand(0);
-        let winding = Winding::new(&soup.mesh, &soup.operands, lattice, progress);
         match (self.options.method, self.options.sign) {
             (DistanceMethod::Exact, DistanceSign::Winding) => {
-                drop(layers);
+                cast.layers.clear();
                 stages.begin("distance")?;
-                return self.exact(&soup.mesh, Sign::Winding(&winding, &expression));
+                return self.exact(&cast.soup.mesh, Sign::Winding(&cast.winding(progress), &expression));
             }
             (DistanceMethod::Exact, DistanceSign::Levels) => {
-                drop(layers);
+                cast.layers.clear();
                 stages.begin("levels")?;
-                let levels = Levels::of(&soup.mesh, lattice, progress).map_err(no_levels)?;
+                let levels = Levels::of(&cast.soup.mesh, lattice, progress)?;
                 stages.begin("distance")?;
-                return self.exact(&soup.mesh, Sign::Levels(&levels));
+                return self.exact(&cast.soup.mesh, Sign::Levels(&levels));
             }
             _ => {}
         }
-        let hits = solid::count(&layers);
         stages.begin("spans")?;
-        let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, &expression));
-        let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
-        solid::refuse_scattered(&spans, hits)?;
+        let mut survey = Survey::of(cast, &expression, progress)?;
+        refuse_scattered(&survey)?;
         stages.begin("vote")?;
-        let (operands, rule) = (&soup.operands, VoteRule::Winding);
-        let jury = Jury { spans: &spans, operands, expression: &expression, rule, winding: &winding };
-        let votes = vote_near_surface(&jury, progress)?;
+        let votes = survey.votes(VoteRule::Winding, &survey.winding(progress), progress)?;
         report.vote = Some(doubts(&votes, lattice));
         stages.begin("distance")?;
         match self.options.method {
             DistanceMethod::Exact | DistanceMethod::Characteristics | DistanceMethod::Prism => {
-                self.exact(&soup.mesh, Sign::Votes(&votes))
+                self.exact(&survey.soup.mesh, Sign::Votes(&votes))
             }
             DistanceMethod::Robust => {
-                let near = sdf::robust(&spans, &soup.planes(lattice), &votes, &RobustOptions::default(), progress)?;
-                drop(spans);
+                let (options, planes) = (RobustOptions::default(), survey.planes());
+                let near = sdf::robust(&survey.spans, &planes, (&votes, lattice), &options, progress)?;
+                survey.spans.clear();
                 Ok(self.march(&near)?)
             }
         }
     }
 
     /// Extends the robust field to the band, or to the whole lattice.
-    fn march(&self, near: &Grid<f32>) -> Result<Grid<f32>, Stopped> {
+    fn march(&self, near: &DistanceField) -> Result<DistanceField, Stopped> {
         let reach = match self.band {
             Band::Within(h) => h as f32,
             Band::Full => self.lattice.dims.as_vec3().length() + BRICK as f32,
         };
-        let mut field = sdf::march(near, &self.lattice, reach, self.progress)?;
+        let mut field = sdf::march(near, reach, self.progress)?;
         if let Band::Within(h) = self.band {
             // Marching goes a little beyond narrow bands.
             let band = h as f32;
-            field.values.par_iter_mut().flatten().for_each(|value| *value = value.clamp(-band, band));
-            (field.inside, field.outside) = (-band, band);
+            field.grid.values.par_iter_mut().flatten().for_each(|value| *value = value.clamp(-band, band));
+            (field.grid.inside, field.grid.outside) = (-band, band);
         }
         Ok(field)
     }
@@ -368,39 +410,40 @@ impl Run<'_> {
 impl DistanceOutcome {
     /// Appends the values of plane `z` of the lattice, model units, x fastest, then y.
     pub fn plane(&self, z: usize, values: &mut Vec<f32>) {
-        let [width, height] = [self.lattice.dims.x as usize, self.lattice.dims.y as usize];
+        let grid = &self.field.grid;
+        let [width, height] = [self.field.lattice.dims.x as usize, self.field.lattice.dims.y as usize];
         let start = values.len();
         values.resize(start + width * height, 0.0);
-        let (z, layer, h) = (z as i32 / BRICK, z % BRICK as usize, self.lattice.h);
-        let scaled = |value: f32| (f64::from(value) * h) as f32;
+        let (z, layer) = (z as i32 / BRICK, z % BRICK as usize);
+        let scaled = |value: f32| self.field.length(value) as f32;
         for (y, rows) in values[start..].chunks_mut(8 * width).enumerate() {
             for x in 0..width.div_ceil(8) {
-                let slot = self.field.bricks.slot(IVec3::new(x as i32, y as i32, z));
+                let slot = grid.bricks.slot(IVec3::new(x as i32, y as i32, z));
                 for (row, values) in rows.chunks_mut(width).enumerate() {
                     let values = &mut values[8 * x..width.min(8 * x + 8)];
                     match slot {
                         Slot::Active(n) => {
-                            let brick = &self.field.values[n as usize][64 * layer + 8 * row..];
+                            let brick = &grid.values[n as usize][64 * layer + 8 * row..];
                             values.iter_mut().zip(brick).for_each(|(value, &from)| *value = scaled(from));
                         }
-                        Slot::Inside => values.fill(scaled(self.field.inside)),
-                        Slot::Outside => values.fill(scaled(self.field.outside)),
+                        Slot::Inside => values.fill(scaled(grid.inside)),
+                        Slot::Outside => values.fill(scaled(grid.outside)),
                     }
                 }
             }
         }
     }
 
-    /// A field in h over `lattice`, with its report filled in.
-    pub(super) fn described(field: Grid<f32>, lattice: Lattice, band: Band, report: DistanceReport) -> Self {
-        let mut outcome = Self { field, lattice, report };
+    /// A field with its report filled in.
+    pub(super) fn described(field: DistanceField, band: Band, report: DistanceReport) -> Self {
+        let mut outcome = Self { field, report };
         outcome.describe(band);
         outcome
     }
 
     /// Fills in what the report says of the field.
     fn describe(&mut self, band: Band) {
-        let planes = (0..self.lattice.dims.z as usize).into_par_iter();
+        let planes = (0..self.field.lattice.dims.z as usize).into_par_iter();
         let of_plane = |z| {
             let mut values = Vec::new();
             self.plane(z, &mut values);
@@ -410,12 +453,12 @@ impl DistanceOutcome {
                 .fold(start, |(inside, [low, high]), &v| (inside + usize::from(v < 0.0), [low.min(v), high.max(v)]))
         };
         let parts: Vec<(usize, [f32; 2])> = planes.map(of_plane).collect();
-        let report = &mut self.report;
-        report.origin = self.lattice.origin.to_array();
-        report.voxel = self.lattice.h;
-        report.dims = self.lattice.dims.to_array();
-        report.band = if let Band::Within(h) = band { Some(h * self.lattice.h) } else { None };
-        report.stored = self.field.values.len() * crate::lattice::BRICK_VOXELS;
+        let (report, lattice) = (&mut self.report, &self.field.lattice);
+        report.origin = lattice.origin.to_array();
+        report.voxel = lattice.h;
+        report.dims = lattice.dims.to_array();
+        report.band = if let Band::Within(h) = band { Some(h * lattice.h) } else { None };
+        report.stored = self.field.grid.values.len() * crate::lattice::BRICK_VOXELS;
         report.inside = parts.iter().map(|part| part.0).sum();
         let range = parts.iter().map(|part| part.1);
         report.range = range.fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], [low, high]| [a.min(low), b.max(high)]);

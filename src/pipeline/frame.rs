@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 
-use super::{Options, Outcome, Precision, Report};
+use super::{Precision, Report, SurfaceOptions};
 use crate::field::{Placement, Shared, placed};
 use crate::lattice::Lattice;
 use crate::mesh::{Bounds, TriMesh};
@@ -44,14 +44,14 @@ impl Frame {
     }
 
     /// The frame of several operands, whatever is wrong with them.
-    pub(super) fn of(operands: &[TriMesh], options: &Options) -> Self {
-        let bounds = operands.iter().filter_map(TriMesh::bounds).reduce(|a, b| a.union(&b));
+    pub(super) fn of(operands: &[&TriMesh], options: &SurfaceOptions) -> Self {
+        let bounds = operands.iter().filter_map(|mesh| mesh.bounds()).reduce(|a, b| a.union(&b));
         bounds.map_or(Self::default(), |bounds| Self::of_box(&bounds, options))
     }
 
     /// The frame of operands in a box. A result in single precision is made where it will be as long as there are enough steps to a
     /// voxel: then it is valid in these numbers, while one that is moved there is rounded again.
-    pub(super) fn of_box(bounds: &Bounds, options: &Options) -> Self {
+    pub(super) fn of_box(bounds: &Bounds, options: &SurfaceOptions) -> Self {
         let farthest = bounds.min.abs().max(bounds.max.abs()).max_element();
         let step = farthest * f64::from(f32::EPSILON);
         let h = options.voxel.spacing(bounds.size().max_element());
@@ -64,16 +64,15 @@ impl Frame {
         Bounds { min: bounds.min - self.origin, max: bounds.max - self.origin }
     }
 
-    /// The operands as the pipelines see them.
-    pub(super) fn local<'a>(&self, operands: &'a [TriMesh]) -> Cow<'a, [TriMesh]> {
+    /// An operand as the pipelines see it.
+    pub(super) fn local<'a>(&self, mesh: &'a TriMesh) -> Cow<'a, TriMesh> {
         if self.origin == DVec3::ZERO {
-            return Cow::Borrowed(operands);
+            return Cow::Borrowed(mesh);
         }
-        let moved = |mesh: &TriMesh| TriMesh {
+        Cow::Owned(TriMesh {
             positions: mesh.positions.iter().map(|&p| p - self.origin).collect(),
             triangles: mesh.triangles.clone(),
-        };
-        Cow::Owned(operands.iter().map(moved).collect())
+        })
     }
 
     /// A field as the pipelines see it.
@@ -81,15 +80,11 @@ impl Frame {
         if self.origin == DVec3::ZERO { field.clone() } else { placed(field.clone(), Placement::moved(-self.origin)) }
     }
 
-    /// An outcome where the operands are.
-    pub(super) fn global(&self, mut outcome: Outcome) -> Outcome {
-        if self.origin == DVec3::ZERO {
-            return outcome;
+    /// Moves a mesh to where the operands are.
+    pub(super) fn mesh(&self, mesh: &mut TriMesh) {
+        if self.origin != DVec3::ZERO {
+            mesh.positions.iter_mut().for_each(|p| *p += self.origin);
         }
-        outcome.mesh.positions.iter_mut().for_each(|p| *p += self.origin);
-        outcome.lattice = self.global_lattice(outcome.lattice);
-        self.report(&mut outcome.report);
-        outcome
     }
 
     /// A lattice where the operands are.
@@ -105,11 +100,13 @@ impl Frame {
         }
     }
 
-    fn place(&self, p: &mut [f64; 3]) {
+    /// Moves a place to where the operands are.
+    pub(super) fn place(&self, p: &mut [f64; 3]) {
         *p = (DVec3::from_array(*p) + self.origin).to_array();
     }
 
-    fn report(&self, report: &mut Report) {
+    /// Moves the places of a report to where the operands are.
+    pub(super) fn report(&self, report: &mut Report) {
         self.votes(&mut report.vote);
         for region in &mut report.thin.regions {
             self.place(&mut region.min);
@@ -117,12 +114,6 @@ impl Frame {
         }
         if let Some(topology) = &mut report.topology {
             topology.lost.iter_mut().for_each(|lost| self.place(&mut lost.at));
-        }
-        if let Some(place) = report.morphology.as_mut().and_then(|report| report.thin_place.as_mut()) {
-            self.place(place);
-        }
-        if let Some(canals) = &mut report.canals {
-            canals.canals.iter_mut().for_each(|canal| self.place(&mut canal.position));
         }
     }
 }

@@ -5,13 +5,18 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use serde::Serialize;
 
-use super::kind::counted;
-use super::morphology::{Voxels, usable, volume, with_voxels};
-use super::{Error, MorphologyOptions, Options, Outcome, TriangleSource, VoxelSize, boolean, prepare, stages};
+use super::morphology::{Voxels, plan_offsets, with_voxels};
+use super::offsets::{usable, volume};
+use super::plan::Offsets;
+use super::stages::Stages;
+use super::{
+    BooleanError, Changed, LatticeError, MorphologyError, MorphologyOptions, Plan, Report, SurfaceOptions,
+    TriangleSource, boolean, sizing,
+};
 use crate::ldi::{Expression, Operands};
-use crate::mesh::{ClosestTree, Pseudonormals, TriMesh};
+use crate::mesh::{ClosestTree, Pseudonormals, Solid, TriMesh};
 use crate::morphology::Operation;
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use crate::shells::{Shell, bodies, shells};
 
 /// Walls are at least this many voxels thick.
@@ -33,8 +38,8 @@ pub struct HollowOptions {
     pub wall: f64,
     /// Holes through the wall.
     pub drains: Vec<Drain>,
-    /// How the operand becomes a solid first, and the voxel size.
-    pub solid: Options,
+    /// How the new surface is made.
+    pub surface: SurfaceOptions,
 }
 
 /// A round hole from the surface into a cavity, across the wall.
@@ -76,84 +81,136 @@ pub struct DrainReport {
     pub depth: f64,
 }
 
-/// Repairs `input` and makes a cavity in it that stays the thickness of a wall away from the surface, which stays as it is but for the
-/// drains.
+/// Why a solid could not be hollowed. Lengths are in model units.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum HollowError {
+    /// Interrupted, or the deadline passed.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// Walls or drains are too thin for the voxels.
+    #[error("{what} of {} need a voxel of at most {}, and it is {}", short(*length), short(0.99 * length / voxels), short(*voxel))]
+    TooThin {
+        /// `walls` or `drains`.
+        what: &'static str,
+        /// Their thickness or diameter.
+        length: f64,
+        /// How many voxels that has to be at least.
+        voxels: f64,
+        /// The voxel.
+        voxel: f64,
+    },
+    /// The solid is nowhere thick enough.
+    #[error(
+        "nothing would be hollow: with walls of {}, the solid is nowhere thick enough for a cavity of 64 voxels; \
+         use a thinner wall",
+        short(*wall)
+    )]
+    NoCavity {
+        /// Thickness of the wall.
+        wall: f64,
+    },
+    /// A drain leads nowhere.
+    #[error("drain {number} at {} leads into no cavity: {why}", place(*at))]
+    Drain {
+        /// Its number, from 1.
+        number: usize,
+        /// The point that was given for it.
+        at: DVec3,
+        /// One sentence.
+        why: String,
+    },
+    /// The erosion that makes the cavity failed.
+    #[error(transparent)]
+    Erosion(MorphologyError),
+    /// Taking the cavity and the drains away failed.
+    #[error(transparent)]
+    Difference(#[from] BooleanError),
+}
+
+/// Makes a cavity in a solid that stays the thickness of a wall away from the surface, which stays as it is but for the drains.
 ///
 /// # Errors
-/// Those of [`boolean`]; [`Error::VoxelSize`] for a wall that the lattice cannot hold; [`Error::NothingEnclosed`] where the
-/// solid is nowhere thick enough; [`Error::Drain`] for a drain that leads into no cavity.
-pub fn hollow(input: &TriMesh, options: &HollowOptions, progress: &Progress) -> Result<Outcome, Error> {
+/// See [`HollowError`].
+pub fn hollow(solid: &Solid, options: &HollowOptions, progress: &Progress) -> Result<Changed, HollowError> {
     let wall = usable(options.wall)?;
-    let h = prepare::spacing(&prepare::bounds(std::slice::from_ref(input))?, options.solid.voxel)?;
+    let bounds = sizing::bounds([solid.mesh()]).map_err(|_| HollowError::NoCavity { wall })?;
+    let h = sizing::spacing(&bounds, options.surface.voxel)?;
     check_sizes(options, h)?;
-    let fixed = Options { voxel: VoxelSize::Length(h), ..options.solid.clone() };
-    let solid = boolean(std::slice::from_ref(input), &Expression::Operand(0), &fixed, progress)?;
-    let mut stages = stages::Stages::new(progress);
+    let surface = options.surface.with_voxel(h);
+    let mut stages = Stages::new(progress);
     stages.begin("hollow")?;
-    let bare = Options { classes: Vec::new(), ..fixed };
-    let shrink = MorphologyOptions { operation: Operation::Erode, radius: wall, mitre: None, solid: bare.clone() };
-    let nothing = || Error::NothingEnclosed {
-        reason: format!(
-            "nothing would be hollow: with walls of {}, the solid is nowhere thick enough for a cavity of 64 voxels; \
-             use a thinner wall",
-            short(wall)
-        ),
-    };
-    let eroded = match with_voxels(&solid.mesh, &shrink, Voxels::OfRadius, progress) {
-        Ok(outcome) => outcome.mesh,
-        Err(Error::NothingEnclosed { .. }) => return Err(nothing()),
-        Err(error) => return Err(error),
+    let shrink = MorphologyOptions { operation: Operation::Erode, radius: wall, sharp: None, surface };
+    let eroded = match with_voxels(solid, &shrink, Voxels::OfRadius, progress) {
+        Ok(changed) => changed.solid,
+        Err(MorphologyError::NothingLeft { .. } | MorphologyError::AllTooThin { .. }) => {
+            return Err(HollowError::NoCavity { wall });
+        }
+        Err(error) => return Err(error.into()),
     };
     let (cavity, cavities, left_out) = without_crumbs(&eroded, LEAST_CAVITY * h.powi(3), progress)?;
     if cavities == 0 {
-        return Err(nothing());
+        return Err(HollowError::NoCavity { wall });
     }
-    let drills = drills(&solid.mesh, &cavity, &options.drains, h)?;
+    let drills = drills(solid, &cavity, &options.drains, h)?;
     stages.begin("subtract")?;
-    let count = 2 + drills.len();
-    let mut operands = vec![solid.mesh.clone(), cavity];
-    operands.extend(drills.iter().map(|drill| drill.0.clone()));
-    let made = boolean(&operands, &Expression::difference(count), &bare, progress)?;
-    let source = |source: &TriangleSource| match *source {
-        TriangleSource::Operand { operand: 0, triangle } => solid.sources[triangle as usize],
-        _ => TriangleSource::Closed,
+    let operands = [solid.mesh(), &cavity].into_iter().chain(drills.iter().map(|drill| &drill.0));
+    let made = boolean(operands, &Expression::difference(2 + drills.len()), &surface.into(), progress)?;
+    let own = |source: &TriangleSource| match *source {
+        TriangleSource::Operand { operand: 0, triangle } => Some(triangle),
+        _ => None,
     };
-    let sources: Vec<TriangleSource> = made.sources.iter().map(source).collect();
-    let mut report = solid.report.clone();
-    report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
-    report.hollow = Some(HollowReport {
+    let account = HollowReport {
         wall,
-        volume_before: volume(&solid.mesh),
-        volume_after: volume(&made.mesh),
+        volume_before: volume(solid),
+        volume_after: volume(&made.solid),
         cavities,
         left_out,
         drains: drills.iter().map(|drill| drill.1).collect(),
-    });
-    report.warnings.extend(made.report.warnings.iter().cloned());
-    report.stages.extend(stages.finish());
-    let outcome = Outcome { mesh: made.mesh, sources, lattice: made.lattice, report };
-    Ok(counted(outcome, std::slice::from_ref(input)))
+    };
+    let report =
+        Report { hollow: Some(account), warnings: made.report.warnings, stages: stages.finish(), ..Report::default() };
+    Ok(Changed { own: made.sources.iter().map(own).collect(), solid: made.solid, lattice: made.lattice, report })
 }
 
-fn check_sizes(options: &HollowOptions, h: f64) -> Result<(), Error> {
-    let too_fine = |what: &str, length: f64, voxels: f64| {
-        let (length, fits) = (short(length), short(0.99 * length / voxels));
-        let reason = format!("{what} of {length} need a voxel of at most {fits}, and it is {}", short(h));
-        Err(Error::VoxelSize { reason })
-    };
+/// What [`hollow`] would cost for a solid that is about where `mesh` is.
+///
+/// # Errors
+/// Those of [`hollow`] that come before anything is made.
+pub fn plan_hollow(mesh: &TriMesh, options: &HollowOptions) -> Result<Plan, HollowError> {
+    let radius = usable(options.wall)?;
+    Ok(plan_offsets(mesh, &options.surface, Offsets { count: 1, radius, thin: false })?)
+}
+
+fn check_sizes(options: &HollowOptions, h: f64) -> Result<(), HollowError> {
+    let too_thin = |what: &'static str, length, voxels| Err(HollowError::TooThin { what, length, voxels, voxel: h });
     if options.wall < LEAST_WALL * h {
-        return too_fine("walls", options.wall, LEAST_WALL);
+        return too_thin("walls", options.wall, LEAST_WALL);
     }
     for drain in &options.drains {
         if usable(drain.diameter)? < LEAST_DRAIN * h {
-            return too_fine("drains", drain.diameter, LEAST_DRAIN);
+            return too_thin("drains", drain.diameter, LEAST_DRAIN);
         }
     }
     Ok(())
 }
 
+impl From<MorphologyError> for HollowError {
+    fn from(error: MorphologyError) -> Self {
+        match error {
+            MorphologyError::Stopped(stopped) => Self::Stopped(stopped),
+            other => Self::Erosion(other),
+        }
+    }
+}
+
+impl From<LatticeError> for HollowError {
+    fn from(error: LatticeError) -> Self {
+        Self::Erosion(error.into())
+    }
+}
+
 /// The bodies of at least some volume, how many these are, and how many others there were.
-fn without_crumbs(mesh: &TriMesh, least: f64, progress: &Progress) -> Result<(TriMesh, usize, usize), Error> {
+fn without_crumbs(mesh: &TriMesh, least: f64, progress: &Progress) -> Result<(TriMesh, usize, usize), Stopped> {
     let shells = shells(mesh, &Operands::new([mesh.triangles.len()]));
     let all = bodies(mesh, &shells, progress)?;
     let count = all.len();
@@ -170,16 +227,18 @@ fn without_crumbs(mesh: &TriMesh, least: f64, progress: &Progress) -> Result<(Tr
 }
 
 /// A prism to take away for each drain, and what it is.
-fn drills(solid: &TriMesh, cavity: &TriMesh, drains: &[Drain], h: f64) -> Result<Vec<(TriMesh, DrainReport)>, Error> {
+fn drills(
+    solid: &TriMesh,
+    cavity: &TriMesh,
+    drains: &[Drain],
+    h: f64,
+) -> Result<Vec<(TriMesh, DrainReport)>, HollowError> {
     if drains.is_empty() {
         return Ok(Vec::new());
     }
     let (tree, normals) = (ClosestTree::of_mesh(solid), Pseudonormals::of(solid));
     let drill = |(number, drain): (usize, &Drain)| {
-        let refused = |why: String| {
-            let at = place(drain.at);
-            Error::Drain { reason: format!("drain {} at {at} leads into no cavity: {why}", number + 1) }
-        };
+        let refused = |why: String| HollowError::Drain { number: number + 1, at: drain.at, why };
         let nearest = tree.nearest(drain.at).ok_or_else(|| refused("there is no surface".into()))?;
         let out = normals.at(&nearest);
         let Some(across) = out.try_normalize() else { return Err(refused("the surface has no side there".into())) };

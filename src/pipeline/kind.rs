@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Outcome, TriangleSource};
+use super::{Operand, Outcome, TriangleSource};
 use crate::mesh::TriMesh;
 
 /// What a triangle of a result is.
@@ -63,24 +63,24 @@ impl TriangleCounts {
 
 /// The kind of each triangle of a result, told by its corners and those of the operand's triangle that it lies on. Corners are the same also
 /// after rounding to single precision, and when the triangle was turned over.
-pub fn kinds(outcome: &Outcome, operands: &[TriMesh]) -> Vec<TriangleKind> {
+pub fn kinds<'a>(outcome: &Outcome, operands: impl IntoIterator<Item: Into<Operand<'a>>>) -> Vec<TriangleKind> {
+    let operands: Vec<&TriMesh> = operands.into_iter().map(|operand| operand.into().mesh).collect();
+    kinds_of(&outcome.solid, &outcome.sources, &operands)
+}
+
+/// The same of a result that is not judged yet.
+pub(super) fn kinds_of(mesh: &TriMesh, sources: &[TriangleSource], operands: &[&TriMesh]) -> Vec<TriangleKind> {
     let kind = |(t, source): (usize, &TriangleSource)| match *source {
         TriangleSource::Closed => TriangleKind::MadeUp,
         TriangleSource::Operand { operand, triangle } => match own(operands, operand, triangle) {
-            Some(own) if same(outcome.mesh.corners(t), own).is_some() => TriangleKind::Kept,
+            Some(own) if same(mesh.corners(t), own).is_some() => TriangleKind::Kept,
             _ => TriangleKind::Rebuilt,
         },
     };
-    outcome.sources.par_iter().enumerate().map(kind).collect()
+    sources.par_iter().enumerate().map(kind).collect()
 }
 
-/// The outcome with the numbers of kinds in its report. `operands`: those that its sources name, in the same place.
-pub(super) fn counted(mut outcome: Outcome, operands: &[TriMesh]) -> Outcome {
-    outcome.report.triangles = TriangleCounts::of(&kinds(&outcome, operands));
-    outcome
-}
-
-fn own(operands: &[TriMesh], operand: u32, triangle: u32) -> Option<[DVec3; 3]> {
+fn own(operands: &[&TriMesh], operand: u32, triangle: u32) -> Option<[DVec3; 3]> {
     let mesh = operands.get(operand as usize)?;
     ((triangle as usize) < mesh.triangles.len()).then(|| mesh.corners(triangle as usize))
 }

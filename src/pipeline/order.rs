@@ -5,43 +5,54 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::{Error, Options, Outcome, TriangleSource};
+use super::{BooleanError, Operand, Outcome, TriangleSource};
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
+use crate::orient::OrientReport;
 
-/// Calls `evaluate` with the operands in an order of their own, and gives back its result in terms of the order given.
-pub(super) fn in_order(
-    operands: &[TriMesh],
-    expression: &Expression,
-    options: &Options,
-    evaluate: impl FnOnce(&[TriMesh], &Expression, &Options) -> Result<Outcome, Error>,
-) -> Result<Outcome, Error> {
-    let mut order: Vec<usize> = (0..operands.len()).collect();
-    order.sort_by(|&a, &b| compare(&operands[a], &operands[b]));
-    if order.is_sorted() {
-        return evaluate(operands, expression, options);
+/// Operands in an order of their own, and the way back.
+pub(super) struct Ordered<'a> {
+    pub operands: Vec<Operand<'a>>,
+    pub expression: Expression,
+    /// For each place the number of the operand as given.
+    given: Vec<usize>,
+}
+
+impl<'a> Ordered<'a> {
+    pub(super) fn new(operands: Vec<Operand<'a>>, expression: &Expression) -> Self {
+        let mut given: Vec<usize> = (0..operands.len()).collect();
+        given.sort_by(|&a, &b| compare(operands[a].mesh, operands[b].mesh));
+        let mut place_of = vec![0; given.len()];
+        given.iter().enumerate().for_each(|(place, &given)| place_of[given] = place);
+        let expression = renumbered(expression, &place_of);
+        Self { operands: given.iter().map(|&given| operands[given]).collect(), expression, given }
     }
-    let mut place_of = vec![0; order.len()];
-    order.iter().enumerate().for_each(|(place, &given)| place_of[given] = place);
-    let sorted: Vec<TriMesh> = order.iter().map(|&given| operands[given].clone()).collect();
-    let classes = match options.classes.is_empty() {
-        true => Vec::new(),
-        false => order.iter().map(|&given| options.classes.get(given).cloned().unwrap_or_default()).collect(),
-    };
-    let options = Options { classes, ..options.clone() };
-    let mut outcome = evaluate(&sorted, &renumbered(expression, &place_of), &options).map_err(|error| match error {
-        Error::Empty { operand } => Error::Empty { operand: order.get(operand).copied().unwrap_or(operand) },
-        other => other,
-    })?;
-    for source in &mut outcome.sources {
-        if let TriangleSource::Operand { operand, .. } = source {
-            *operand = order.get(*operand as usize).map_or(*operand, |&given| given as u32);
+
+    /// An outcome in terms of the order given.
+    pub(super) fn back(&self, mut outcome: Outcome) -> Outcome {
+        for source in &mut outcome.sources {
+            if let TriangleSource::Operand { operand, .. } = source {
+                *operand = self.given.get(*operand as usize).map_or(*operand, |&given| given as u32);
+            }
+        }
+        let reports = &mut outcome.report.orient;
+        if reports.len() == self.given.len() {
+            let mut of_places = std::mem::take(reports);
+            *reports = vec![OrientReport::default(); of_places.len()];
+            self.given.iter().zip(&mut of_places).for_each(|(&given, report)| reports[given] = std::mem::take(report));
+        }
+        outcome
+    }
+
+    /// An error in terms of the order given.
+    pub(super) fn error(&self, error: BooleanError) -> BooleanError {
+        match error {
+            BooleanError::Empty { operand } => {
+                BooleanError::Empty { operand: self.given.get(operand).copied().unwrap_or(operand) }
+            }
+            other => other,
         }
     }
-    if outcome.report.orient.len() == place_of.len() {
-        outcome.report.orient = place_of.iter().map(|&place| outcome.report.orient[place].clone()).collect();
-    }
-    Ok(outcome)
 }
 
 /// By the place of the box, then by the triangles.

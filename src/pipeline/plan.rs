@@ -1,16 +1,84 @@
 //! What a run costs, estimated before anything is allocated.
 
 use glam::DVec3;
+use serde::Serialize;
 
 use super::apart::Apart;
 use super::frame::Frame;
-use super::morphology::offset_voxel;
-use super::survey::Survey;
-use super::{CanalOptions, Error, HollowOptions, MorphologyOptions, Options, Plan, ThickenOptions, VoxelSize, prepare};
+use super::outlook::Outlook;
+use super::{BooleanError, Operand, Options, SurfaceOptions, VoxelSize, sizing};
+use crate::digits;
 use crate::lattice::Lattice;
 use crate::ldi::{Expression, MAX_CROSSINGS, MAX_TRIANGLES};
-use crate::mesh::TriMesh;
+use crate::mesh::{Bounds, TriMesh};
 use crate::progress::Progress;
+use crate::survey::Soup;
+
+/// What a run would cost, before it is run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Plan {
+    /// Voxel spacing, model units.
+    pub voxel: f64,
+    /// Voxels along x, y, z.
+    pub dims: [i32; 3],
+    /// Estimated voxels near the surface.
+    pub voxels_near_surface: u64,
+    /// Estimated triangles of the result.
+    pub triangles: u64,
+    /// Estimated peak memory, bytes.
+    pub memory: u64,
+    /// Estimated seconds on one core of an ordinary machine.
+    pub seconds: f64,
+}
+
+impl Plan {
+    /// Of two runs one after the other: what the first needed is free when the second begins.
+    pub fn then(self, next: Self) -> Self {
+        Self { memory: self.memory.max(next.memory), seconds: self.seconds + next.seconds, ..next }
+    }
+}
+
+/// Why a run would be beyond what there is.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LimitError {
+    /// There are more triangles or vertices than can be numbered.
+    #[error(
+        "{triangles} triangles over {vertices} vertices are more than the {MAX_TRIANGLES} triangles that are possible: \
+         repair the parts one by one"
+    )]
+    Triangles {
+        /// Triangles of all operands.
+        triangles: usize,
+        /// Their vertices.
+        vertices: usize,
+    },
+    /// The rays would cross the surface more often than can be numbered.
+    #[error(
+        "the surface would be crossed {crossings:.1e} times, more than can be numbered: \
+         use a larger voxel, or look for faces that lie on one another in thousands"
+    )]
+    Crossings {
+        /// How often, about.
+        crossings: f64,
+    },
+    /// More memory would be needed than allowed.
+    #[error("about {} MB would be needed and {} MB are allowed{}", needed / 1_000_000, allowed / 1_000_000, fits(voxel_that_fits))]
+    Memory {
+        /// Estimated peak, bytes.
+        needed: u64,
+        /// The cap, bytes.
+        allowed: u64,
+        /// A voxel size that fits, model units; `None` when no size does.
+        voxel_that_fits: Option<f64>,
+    },
+}
+
+fn fits(voxel: &Option<f64>) -> String {
+    voxel.as_ref().map_or_else(
+        || "; no voxel size would fit".into(),
+        |h| format!("; a voxel of {} would fit", digits::rounded_up(*h)),
+    )
+}
 
 /// Bytes of the program itself, its threads and what it reads into.
 pub(super) const BASE_BYTES: f64 = 11e6;
@@ -111,63 +179,36 @@ impl Offsets {
     }
 }
 
-/// What [`super::boolean`] (and [`super::repair`]: one operand) would cost.
-pub fn plan(operands: &[TriMesh], options: &Options) -> Result<Plan, Error> {
-    plan_with(operands, options, Offsets::default())
-}
-
-/// What [`super::morphology`] would cost.
-pub fn plan_morphology(input: &TriMesh, options: &MorphologyOptions) -> Result<Plan, Error> {
-    let offsets =
-        Offsets { count: options.operation.offsets(), radius: super::morphology::usable(options.radius)?, thin: false };
-    plan_with(std::slice::from_ref(input), &options.solid, offsets)
-}
-
-/// What [`super::hollow`] would cost.
-pub fn plan_hollow(input: &TriMesh, options: &HollowOptions) -> Result<Plan, Error> {
-    let offsets = Offsets { count: 1, radius: super::morphology::usable(options.wall)?, thin: false };
-    plan_with(std::slice::from_ref(input), &options.solid, offsets)
-}
-
-/// What [`super::canals`] would cost.
-pub fn plan_canals(input: &TriMesh, options: &CanalOptions) -> Result<Plan, Error> {
-    let radius = super::morphology::usable(options.max_diameter / 2.0)?;
-    plan_with(std::slice::from_ref(input), &options.solid, Offsets { count: 2, radius, thin: false })
-}
-
-/// What [`super::thicken`] would cost.
-pub fn plan_thicken(input: &TriMesh, options: &ThickenOptions) -> Result<Plan, Error> {
-    let radius = super::morphology::usable(options.least / 2.0)?;
-    plan_with(std::slice::from_ref(input), &options.solid, Offsets { count: 1, radius, thin: true })
-}
-
-fn plan_with(operands: &[TriMesh], options: &Options, offsets: Offsets) -> Result<Plan, Error> {
-    let operands = &*Frame::of(operands, options).local(operands);
-    let bounds = prepare::bounds(operands)?;
-    if offsets != Offsets::default() {
-        let options = match (offsets.thin, operands) {
-            (false, [input]) => {
-                &Options { voxel: VoxelSize::Length(offset_voxel(input, options, offsets)?), ..options.clone() }
-            }
-            _ => options,
-        };
-        return Ok(Input::surveyed(operands).cost(&prepare::lattice(&bounds, options.voxel)?, options, offsets));
-    }
-    let h = prepare::spacing(&bounds, options.voxel)?;
-    let (rest, touching) = rest(operands, options)?;
-    let standing = Input::of(operands).triangles - rest.triangles.len();
+/// What [`boolean`](super::boolean) would cost, and [`repair`](super::repair): with one operand.
+///
+/// # Errors
+/// Those that the run would have before anything is made.
+pub fn plan<'a>(operands: impl IntoIterator<Item: Into<Operand<'a>>>, options: &Options) -> Result<Plan, BooleanError> {
+    let given: Vec<&TriMesh> = operands.into_iter().map(|operand| operand.into().mesh).collect();
+    let frame = Frame::of(&given, &options.surface());
+    let local: Vec<_> = given.iter().map(|mesh| frame.local(mesh)).collect();
+    let meshes: Vec<&TriMesh> = local.iter().map(AsRef::as_ref).collect();
+    let bounds = sizing::bounds(meshes.iter().copied()).map_err(|operand| BooleanError::Empty { operand })?;
+    let h = sizing::spacing(&bounds, options.voxel)?;
+    let (rest, touching) = rest(&meshes, options)?;
+    let standing = Input::of(&meshes).triangles - rest.triangles.len();
     let Some(bounds) = rest.bounds() else { return Ok(Plan::of_standing(h, standing)) };
-    let lattice = prepare::lattice(&bounds, VoxelSize::Length(h))?;
-    let input = Input { touching, ..Input::surveyed(std::slice::from_ref(&rest)) };
-    let plan = input.cost(&lattice, options, offsets);
+    let lattice = sizing::lattice(&bounds, VoxelSize::Length(h))?;
+    let input = Input { touching, ..Input::surveyed(&[&rest]) };
+    let plan = input.cost(&lattice, &options.surface(), Offsets::default());
     let memory = plan.memory + (STANDING_BYTES * standing as f64) as u64;
     Ok(Plan { triangles: plan.triangles + standing as u64, memory, ..plan })
 }
 
+/// What offsets of a solid would cost, over a lattice around the mesh of a solid that exists, or of one that will be about where `mesh` is.
+pub(super) fn of_offsets(mesh: &TriMesh, lattice: &Lattice, options: &SurfaceOptions, offsets: Offsets) -> Plan {
+    Input::surveyed(&[mesh]).offsets_cost(lattice, options, offsets)
+}
+
 /// What needs voxels of the operands: all but the shells that stand as they are, or are left out. And how many triangles touch others.
-fn rest(operands: &[TriMesh], options: &Options) -> Result<(TriMesh, usize), Error> {
+fn rest(operands: &[&TriMesh], options: &Options) -> Result<(TriMesh, usize), BooleanError> {
     let progress = Progress::none();
-    let soup = prepare::prepare(operands, options.orient, &progress)?;
+    let soup = Soup::of(operands, options.orient, &progress)?;
     // Which shells stand does not depend on the expression, only what becomes of them does.
     let apart = Apart::find(&soup, &Expression::union(operands.len()), options, &progress)?;
     Ok((apart.rest(&soup).mesh, apart.touching()))
@@ -188,21 +229,23 @@ impl Plan {
 }
 
 /// An error when shells that stand as they are would need more memory than allowed.
-pub(super) fn check_standing(triangles: usize, options: &Options) -> Result<(), Error> {
+pub(super) fn check_standing(operands: &[&TriMesh], max_memory: Option<u64>) -> Result<(), LimitError> {
+    let triangles = operands.iter().map(|operand| operand.triangles.len()).sum();
     let needed = Plan::of_standing(0.0, triangles).memory;
-    match options.max_memory {
-        Some(allowed) if needed > allowed => Err(Error::Memory { needed, allowed, voxel_that_fits: None }),
+    match max_memory {
+        Some(allowed) if needed > allowed => Err(LimitError::Memory { needed, allowed, voxel_that_fits: None }),
         _ => Ok(()),
     }
 }
 
-/// An error when the run would need more memory than allowed, or more than 32 bits to number things.
+/// An error when the run would need more memory than allowed, or more than 32 bits to number things. With offsets the operand is the solid
+/// that they are made of.
 pub(super) fn check_limits(
-    operands: &[TriMesh],
+    operands: &[&TriMesh],
     lattice: &Lattice,
-    options: &Options,
+    options: &SurfaceOptions,
     offsets: Offsets,
-) -> Result<(), Error> {
+) -> Result<(), LimitError> {
     let input = Input::of(operands);
     input.check_numbers(lattice)?;
     let Some(allowed) = options.max_memory else { return Ok(()) };
@@ -215,28 +258,17 @@ pub(super) fn check_limits(
     if needed <= allowed {
         return Ok(());
     }
-    let bounds = prepare::bounds(operands)?;
-    let mut voxel_that_fits = None;
-    let mut h = lattice.h;
-    while h < bounds.size().max_element() {
-        h *= 1.1;
-        if input.cost(&Lattice::around(&bounds, h), options, offsets).memory <= allowed {
-            voxel_that_fits = Some(h);
-            break;
-        }
-    }
-    Err(Error::Memory { needed, allowed, voxel_that_fits })
-}
-
-/// The same for one operand, before anything is done.
-pub(super) fn check_offsets(input: &TriMesh, options: &Options, offsets: Offsets) -> Result<(), Error> {
-    let operands = std::slice::from_ref(input);
-    let lattice = prepare::lattice(&prepare::bounds(operands)?, options.voxel)?;
-    check_limits(operands, &lattice, options, offsets)
+    let bounds = operands.iter().filter_map(|mesh| mesh.bounds()).reduce(|a, b| a.union(&b));
+    let fits = |bounds: &Bounds| {
+        let coarser = std::iter::successors(Some(1.1 * lattice.h), |h| Some(1.1 * h));
+        let mut possible = coarser.take_while(|h| h / 1.1 < bounds.size().max_element());
+        possible.find(|&h| input.cost(&Lattice::around(bounds, h), options, offsets).memory <= allowed)
+    };
+    Err(LimitError::Memory { needed, allowed, voxel_that_fits: bounds.as_ref().and_then(fits) })
 }
 
 /// How often the rays of all directions cross the operands, about.
-pub(super) fn crossings(operands: &[TriMesh], lattice: &Lattice) -> f64 {
+pub(super) fn crossings(operands: &[&TriMesh], lattice: &Lattice) -> f64 {
     Input::of(operands).crossings(lattice)
 }
 
@@ -250,24 +282,24 @@ pub(super) struct Input {
     /// Square model units.
     area: f64,
     /// What of it has to be made; without it the worst is assumed.
-    survey: Option<Survey>,
+    outlook: Option<Outlook>,
 }
 
 impl Input {
-    pub(super) fn of(operands: &[TriMesh]) -> Self {
+    pub(super) fn of(operands: &[&TriMesh]) -> Self {
         Self {
             operands: operands.len(),
             triangles: operands.iter().map(|m| m.triangles.len()).sum(),
             vertices: operands.iter().map(|m| m.positions.len()).sum(),
             touching: 0,
-            area: operands.iter().map(area).sum(),
-            survey: None,
+            area: operands.iter().map(|mesh| area(mesh)).sum(),
+            outlook: None,
         }
     }
 
     /// The same, with a look at holes and bends.
-    fn surveyed(operands: &[TriMesh]) -> Self {
-        Self { survey: Some(Survey::of_all(operands)), ..Self::of(operands) }
+    fn surveyed(operands: &[&TriMesh]) -> Self {
+        Self { outlook: Some(Outlook::of_all(operands)), ..Self::of(operands) }
     }
 
     /// Area in h².
@@ -279,23 +311,15 @@ impl Input {
         CROSSINGS_PER_CELL * self.surface(lattice)
     }
 
-    fn check_numbers(&self, lattice: &Lattice) -> Result<(), Error> {
-        if self.triangles > MAX_TRIANGLES || self.vertices > u32::MAX as usize {
-            let reason = format!(
-                "{} triangles over {} vertices are more than the {MAX_TRIANGLES} triangles that are possible: \
-                 repair the parts one by one",
-                self.triangles, self.vertices
-            );
-            return Err(Error::TooLarge { reason });
+    fn check_numbers(&self, lattice: &Lattice) -> Result<(), LimitError> {
+        let (triangles, vertices) = (self.triangles, self.vertices);
+        if triangles > MAX_TRIANGLES || vertices > u32::MAX as usize {
+            return Err(LimitError::Triangles { triangles, vertices });
         }
         // Half of what can be numbered: the estimate leaves out what lies along the triangles' sides.
         let crossings = self.crossings(lattice);
         if crossings > MAX_CROSSINGS as f64 / 2.0 {
-            let reason = format!(
-                "the surface would be crossed {crossings:.1e} times, more than can be numbered: \
-                 use a larger voxel, or look for faces that lie on one another in thousands"
-            );
-            return Err(Error::TooLarge { reason });
+            return Err(LimitError::Crossings { crossings });
         }
         Ok(())
     }
@@ -318,7 +342,7 @@ impl Input {
     fn kept(&self, lattice: &Lattice, cells: f64) -> (f64, f64) {
         let area = lattice.h * lattice.h;
         let (curved, flat) =
-            self.survey.as_ref().map_or((cells, 0.0), |s| (s.curved_lids / area, (s.lids - s.curved_lids) / area));
+            self.outlook.as_ref().map_or((cells, 0.0), |s| (s.curved_lids / area, (s.lids - s.curved_lids) / area));
         let (triangles, touching) = (self.triangles as f64, self.touching as f64);
         let seconds = SECONDS_PER_KEPT_CELL * cells
             + SECONDS_PER_LID_CELL * curved.min(cells)
@@ -330,8 +354,11 @@ impl Input {
         (seconds, triangles + made.min(TRIANGLES_PER_CELL * cells))
     }
 
-    /// Of the whole run, from file to file.
-    fn cost(&self, lattice: &Lattice, options: &Options, offsets: Offsets) -> Plan {
+    /// Of what is to be done over a lattice: with offsets these, else a boolean, from file to file.
+    fn cost(&self, lattice: &Lattice, options: &SurfaceOptions, offsets: Offsets) -> Plan {
+        if offsets.count > 0 {
+            return self.offsets_cost(lattice, options, offsets);
+        }
         let cells = self.cells(lattice);
         let rates = match &options.fit {
             None => &UNFITTED,
@@ -339,21 +366,33 @@ impl Input {
             Some(fit) if fit.keep => &KEPT,
             Some(_) => &REBUILT,
         };
-        // What comes after the solid comes when the memory for it is free again.
-        let solid = self.memory(rates, lattice, 0.0);
-        let after = offsets.rates().map_or(0.0, |rates| self.memory(rates, lattice, offsets.radius / lattice.h));
-        let rebuild_seconds = self.rebuild_seconds(cells);
         let (seconds, triangles) = match &options.fit {
             Some(fit) if fit.keep => self.kept(lattice, cells),
-            _ => (rebuild_seconds, TRIANGLES_PER_CELL * cells),
+            _ => (self.rebuild_seconds(cells), TRIANGLES_PER_CELL * cells),
         };
+        Plan { triangles: triangles as u64, seconds, ..self.sized(lattice, self.memory(rates, lattice, 0.0)) }
+    }
+
+    /// Of offsets of a solid.
+    fn offsets_cost(&self, lattice: &Lattice, options: &SurfaceOptions, offsets: Offsets) -> Plan {
+        let cells = self.cells(lattice);
+        let memory = offsets.rates().map_or(0.0, |rates| self.memory(rates, lattice, offsets.radius / lattice.h));
+        let triangles = match &options.fit {
+            Some(fit) if fit.keep => self.kept(lattice, cells).1,
+            _ => TRIANGLES_PER_CELL * cells,
+        };
+        let seconds = self.rebuild_seconds(cells) * OFFSET_SECONDS * f64::from(offsets.count);
+        Plan { triangles: triangles as u64, seconds, ..self.sized(lattice, memory) }
+    }
+
+    fn sized(&self, lattice: &Lattice, memory: f64) -> Plan {
         Plan {
             voxel: lattice.h,
             dims: lattice.dims.to_array(),
-            voxels_near_surface: (2.0 * cells) as u64,
-            triangles: triangles as u64,
-            memory: solid.max(after) as u64,
-            seconds: seconds + rebuild_seconds * OFFSET_SECONDS * f64::from(offsets.count),
+            voxels_near_surface: (2.0 * self.cells(lattice)) as u64,
+            triangles: 0,
+            memory: memory as u64,
+            seconds: 0.0,
         }
     }
 
@@ -362,8 +401,8 @@ impl Input {
         let (surface, cells) = (self.surface(lattice), self.cells(lattice));
         // The crossings of what is beyond the cells are there all the same.
         let buried = (surface - cells) * CROSSINGS_PER_CELL * BYTES_PER_CROSSING;
-        let (lids, bends) = match &self.survey {
-            Some(survey) => (survey.lids / (lattice.h * lattice.h), survey.bent_cells(lattice.h)),
+        let (lids, bends) = match &self.outlook {
+            Some(outlook) => (outlook.lids / (lattice.h * lattice.h), outlook.bent_cells(lattice.h)),
             None => (cells, cells),
         };
         let size = lattice.dims.as_dvec3();
@@ -401,6 +440,7 @@ pub(super) fn area(mesh: &TriMesh) -> f64 {
 mod tests {
     use super::*;
     use crate::morphology::Operation;
+    use crate::pipeline::{MorphologyOptions, plan_morphology};
     use glam::DVec3;
 
     /// Triangles of area ½, one closely over the other.
@@ -430,51 +470,52 @@ mod tests {
 
     #[test]
     fn more_crossings_than_can_be_numbered_are_refused_before_anything_is_made() {
-        let layers = [stack(1000)];
+        let layers = stack(1000);
         let lattice =
-            |n| prepare::lattice(&prepare::bounds(&layers).expect("bounds"), VoxelSize::Along(n)).expect("one");
-        let options = Options::new(VoxelSize::Along(1));
-        assert_eq!(check_limits(&layers, &lattice(256), &options, Offsets::default()), Ok(()));
+            |n| sizing::lattice(&sizing::bounds([&layers]).expect("bounds"), VoxelSize::Along(n)).expect("a lattice");
+        let surface = SurfaceOptions::new(VoxelSize::Along(1));
+        assert_eq!(check_limits(&[&layers], &lattice(256), &surface, Offsets::default()), Ok(()));
         assert!(matches!(
-            check_limits(&layers, &lattice(4000), &options, Offsets::default()),
-            Err(Error::TooLarge { .. })
+            check_limits(&[&layers], &lattice(4000), &surface, Offsets::default()),
+            Err(LimitError::Crossings { .. })
         ));
     }
 
     #[test]
     fn the_voxel_that_fits_is_the_smallest_of_its_series_that_does() {
-        let input = [stack(4)];
-        let bounds = prepare::bounds(&input).expect("bounds");
-        let lattice = prepare::lattice(&bounds, VoxelSize::Along(500)).expect("a lattice");
-        let options = Options::new(VoxelSize::Along(500));
-        let needed = Input::surveyed(&input).cost(&lattice, &options, Offsets::default()).memory;
-        let allowed = needed / 2;
-        let options = Options { max_memory: Some(allowed), ..options };
-        let Err(Error::Memory { voxel_that_fits: Some(h), .. }) =
-            check_limits(&input, &lattice, &options, Offsets::default())
+        let input = stack(4);
+        let bounds = sizing::bounds([&input]).expect("bounds");
+        let lattice = sizing::lattice(&bounds, VoxelSize::Along(500)).expect("a lattice");
+        let surface = SurfaceOptions::new(VoxelSize::Along(500));
+        let cost = |lattice: &Lattice| Input::surveyed(&[&input]).cost(lattice, &surface, Offsets::default()).memory;
+        let allowed = cost(&lattice) / 2;
+        let surface = SurfaceOptions { max_memory: Some(allowed), ..surface };
+        let Err(LimitError::Memory { voxel_that_fits: Some(h), .. }) =
+            check_limits(&[&input], &lattice, &surface, Offsets::default())
         else {
             panic!("allowed");
         };
-        let at =
-            |h: f64| Input::surveyed(&input).cost(&Lattice::around(&bounds, h), &options, Offsets::default()).memory;
+        let at = |h: f64| cost(&Lattice::around(&bounds, h));
         assert!(at(h) <= allowed && at(h / 1.1) > allowed);
     }
 
     #[test]
     fn offsets_cost_more_the_more_and_the_larger_they_are() {
         let input = stack(4);
-        let solid = Options::new(VoxelSize::Along(64));
+        let options = Options::new(VoxelSize::Along(64));
+        let surface = options.surface();
+        let plain = plan([&input], &options).expect("a plan");
         let of = |operation, radius| {
-            let options = MorphologyOptions { operation, radius, mitre: None, solid: solid.clone() };
-            plan_morphology(&input, &options).expect("a plan")
+            let options = MorphologyOptions { operation, radius, sharp: None, surface };
+            plain.then(plan_morphology(&input, &options).expect("a plan"))
         };
-        let plain = plan(std::slice::from_ref(&input), &solid).expect("a plan");
         let costs = [plain, of(Operation::Dilate, 0.1), of(Operation::Close, 0.1), of(Operation::Close, 0.2)];
         assert!(costs.is_sorted_by(|a, b| a.memory < b.memory && a.seconds <= b.seconds), "{costs:?}");
+        let offsets = Offsets { count: 1, radius: 0.1, thin: false };
+        let lattice = sizing::lattice(&sizing::bounds([&input]).expect("bounds"), surface.voxel).expect("a lattice");
         let between = (costs[0].memory + costs[1].memory) / 2;
-        let options = Options { max_memory: Some(between), ..solid.clone() };
-        assert_eq!(check_offsets(&input, &options, Offsets::default()), Ok(()));
-        let refused = check_offsets(&input, &options, Offsets { count: 1, radius: 0.1, thin: false });
-        assert!(matches!(refused, Err(Error::Memory { voxel_that_fits: Some(_), .. })), "{refused:?}");
+        let surface = SurfaceOptions { max_memory: Some(between), ..surface };
+        let refused = check_limits(&[&input], &lattice, &surface, offsets);
+        assert!(matches!(refused, Err(LimitError::Memory { voxel_that_fits: Some(_), .. })), "{refused:?}");
     }
 }

@@ -1,26 +1,27 @@
 //! What rays and voxels make of the shells that do not stand by themselves.
 
 use glam::{DVec3, IVec3};
-use rayon::prelude::*;
 
 use super::apart::{Standing, touch};
 use super::crumbs::without_crumbs;
-use super::prepare::Soup;
+use super::nothing::{refuse_scattered, why_nothing};
 use super::stages::Stages;
-use super::{Error, Options, Outcome, Report, TriangleSource, backend, plan, prepare, refine, solid};
+use super::{BooleanError, Draft, NothingEnclosed, Options, Report, VoxelSize, Warning, plan, refine, sizing};
 use crate::contour::{ContourOptions, contour};
 use crate::fit::{Facets, fit};
 use crate::lattice::Lattice;
-use crate::ldi::{Evidence, Expression, Spans, spans};
+use crate::ldi::Expression;
 use crate::mesh::TriMesh;
-use crate::progress::{Progress, Stopped};
+use crate::progress::Progress;
 use crate::sdf;
-use crate::vote::{Jury, Winding, vote_near_surface};
+use crate::survey::{Cast, CastOptions, Soup, Survey};
 
 /// What is asked for.
 pub(super) struct Job<'a> {
     pub expression: &'a Expression,
     pub options: &'a Options,
+    /// For each operand a number for each of its triangles, or nothing: what has different numbers is kept apart.
+    pub classes: &'a [Vec<u32>],
     /// The voxel size of the options, model units.
     pub h: f64,
     pub progress: &'a Progress,
@@ -38,9 +39,9 @@ impl Job<'_> {
         rest: Soup,
         standing: Standing,
         stages: &mut Stages<'_>,
-    ) -> Result<Option<Outcome>, Error> {
+    ) -> Result<Option<Draft>, BooleanError> {
         let cells = plan::area(&rest.mesh) / (self.h * self.h);
-        let finest = rest.mesh.bounds().map_or(0.0, |bounds| prepare::finest(&bounds));
+        let finest = rest.mesh.bounds().map_or(0.0, |bounds| sizing::finest(&bounds));
         for halvings in 0..=MOST_HALVINGS {
             let finer = f64::from(1 << halvings);
             if halvings > 0 && (cells * finer * finer > MOST_CELLS || self.h / finer < finest) {
@@ -48,8 +49,7 @@ impl Job<'_> {
             }
             let made = self.if_any(&rest, self.h / finer, stages)?;
             if made.mesh.triangles.is_empty() && standing.mesh.triangles.is_empty() {
-                let reason = "the result is empty: the operands have no such part in common".into();
-                return Err(Error::NothingEnclosed { reason });
+                return Err(NothingEnclosed::NoCommonPart.into());
             }
             if !touch(&made.mesh, &standing.mesh, self.progress)? {
                 return Ok(Some(joined(standing, made)));
@@ -59,85 +59,75 @@ impl Job<'_> {
     }
 
     /// What voxels of size `h` make of a soup, be it nothing.
-    fn if_any(&self, rest: &Soup, h: f64, stages: &mut Stages<'_>) -> Result<Outcome, Error> {
+    fn if_any(&self, rest: &Soup, h: f64, stages: &mut Stages<'_>) -> Result<Draft, BooleanError> {
         let nothing = |warnings| {
             let lattice = Lattice { origin: DVec3::ZERO, h, dims: IVec3::ZERO };
             let report = Report { voxel: h, orient: rest.reports.clone(), warnings, ..Report::default() };
-            Outcome { mesh: TriMesh::default(), sources: Vec::new(), lattice, report }
+            Draft { mesh: TriMesh::default(), sources: Vec::new(), lattice, report }
         };
         if rest.mesh.triangles.is_empty() {
             return Ok(nothing(Vec::new()));
         }
         match self.alone(rest.clone(), h, stages) {
-            Err(Error::NothingEnclosed { reason }) => {
-                Ok(nothing(vec![format!("beside what stays as it is, nothing more is enclosed: {reason}")]))
-            }
+            Err(BooleanError::Nothing(why)) => Ok(nothing(vec![Warning::NothingMore(why)])),
             other => other,
         }
     }
 
-    /// What voxels of size `h`, model units, make of a soup.
-    pub(super) fn alone(&self, mut soup: Soup, h: f64, stages: &mut Stages<'_>) -> Result<Outcome, Error> {
+    /// What voxels of size `h`, model units, make of a soup: the drawing in the crate's documentation, from rays to fit.
+    pub(super) fn alone(&self, soup: Soup, h: f64, stages: &mut Stages<'_>) -> Result<Draft, BooleanError> {
         let Self { expression, options, progress, .. } = *self;
-        let bounds = soup.mesh.bounds().ok_or(Error::Empty { operand: 0 })?;
-        let lattice = prepare::lattice(&bounds, super::VoxelSize::Length(h))?;
-        let operands = std::slice::from_ref(&soup.mesh);
-        plan::check_limits(operands, &lattice, options, plan::Offsets::default())?;
+        let bounds = soup.mesh.bounds().ok_or(BooleanError::Empty { operand: 0 })?;
+        let finest = sizing::finest(&bounds);
+        let lattice = sizing::lattice(&bounds, VoxelSize::Length(h))?;
+        plan::check_limits(&[&soup.mesh], &lattice, &options.surface(), plan::Offsets::default())?;
         stages.begin("ldi")?;
-        let crossings = plan::crossings(operands, &lattice);
-        let (mut layers, made_by) = backend::layers(&soup.mesh, &lattice, options.backend, crossings, progress)?;
-        soup.turn_patches(&mut layers, options.orient, progress)?;
-        let hits = solid::count(&layers);
+        let rays = self.rays(&soup.mesh, &lattice);
+        let cast = Cast::of(soup, &lattice, &rays, progress)?;
+        let made_by = cast.made_by.clone();
         stages.begin("spans")?;
-        let mut evidence = Evidence::new(&layers, soup.mesh.triangles.len());
-        let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, expression));
-        let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
-        evidence.add(&spans);
-        solid::refuse_scattered(&spans, hits)?;
+        let survey = Survey::of(cast, expression, progress)?;
+        refuse_scattered(&survey)?;
         stages.begin("vote")?;
-        let winding = Winding::new(&soup.mesh, &soup.operands, &lattice, progress);
-        let jury = Jury { spans: &spans, operands: &soup.operands, expression, rule: options.rule, winding: &winding };
-        let votes = vote_near_surface(&jury, progress)?;
+        let winding = survey.winding(progress);
+        let votes = survey.votes(options.vote, &winding, progress)?;
         stages.begin("sdf")?;
-        let planes = soup.planes(&lattice);
-        let distance = sdf::robust(&spans, &planes, &votes, &options.robust, progress)?;
+        let planes = survey.planes();
+        let distance = sdf::robust(&survey.spans, &planes, (&votes, &lattice), &options.robust(), progress)?;
         stages.begin("contour")?;
-        let lid = |inside, outside| refine::lid(&winding, expression, inside, outside);
-        let crossing = solid::crossings(&spans, &distance, lid);
-        let mut raw = contour(&lattice, &distance, &crossing, &ContourOptions::default(), progress)?;
+        let crossing = refine::crossings(&survey, &winding, &distance);
+        let mut raw = contour(&distance, &crossing, &ContourOptions::default(), progress)?;
         if raw.mesh.triangles.is_empty() {
-            return Err(Error::NothingEnclosed {
-                reason: solid::why_nothing(&spans, [h, prepare::finest(&bounds)], hits, soup.operands.count()),
-            });
+            return Err(why_nothing(&survey, finest).into());
         }
-        let lids = refine::lids(&mut raw, (&soup, &lattice), &winding, expression, progress)?;
+        let lids = refine::lids(&mut raw, &survey, &winding, progress)?;
         stages.begin("collapse")?;
-        let facets = Facets::new(&soup.mesh, lids).with_classes(soup.classes(&options.classes));
-        let mut surface = refine::merged(raw, &facets, &lattice, options, progress)?;
-        let mut report = solid::report(&lattice, prepare::finest(&bounds), &spans, hits, &votes);
+        let facets = Facets::new(&survey.soup.mesh, lids).with_classes(survey.soup.classes(self.classes));
+        let mut surface = refine::merged(raw, &facets, &lattice, &options.surface(), progress)?;
+        let mut report = Report::surveyed(&survey, &votes, made_by, finest);
         if let Some(options) = &options.fit {
             stages.begin("fit")?;
-            let (fit, account) = fit(&surface, &facets, &evidence, lattice.h, options, progress)?;
-            surface = fit;
-            report.fit = Some(account);
+            let (fitted, account) = fit(&surface, &facets, &survey.evidence, h, options, progress)?;
+            (surface, report.fit) = (fitted, Some(account));
         }
-        let sources = refine::sources(&surface, &facets, &soup);
-        report.orient = std::mem::take(&mut soup.reports);
-        report.lattice = true;
-        report.thin.regions = solid::thin_regions(&spans, &planes, &surface, &lattice);
-        report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
-        report.ldi.made_by = made_by;
-        let mesh = refine::with_own_numbers(surface, &soup.mesh, options.precision, progress)?;
-        let mut made = Outcome { mesh, sources, lattice, report };
-        without_crumbs(&mut made, &soup, h);
+        let sources = refine::sources(&surface, &facets, &survey.soup);
+        report.of_surface(&survey, &planes, &surface, &sources);
+        let mesh = refine::with_own_numbers(surface, &survey.soup.mesh, options.precision, progress)?;
+        let mut made = Draft { mesh, sources, lattice, report };
+        without_crumbs(&mut made, &survey.soup, h);
         Ok(made)
+    }
+
+    fn rays(&self, mesh: &TriMesh, lattice: &Lattice) -> CastOptions {
+        let crossings = plan::crossings(&[mesh], lattice);
+        CastOptions { orient: self.options.orient, backend: self.options.backend, crossings }
     }
 }
 
 /// What stands, and after it what was made.
-fn joined(standing: Standing, made: Outcome) -> Outcome {
+fn joined(standing: Standing, made: Draft) -> Draft {
     let Standing { mut mesh, mut sources } = standing;
     mesh.append(&made.mesh);
     sources.extend(made.sources);
-    Outcome { mesh, sources, ..made }
+    Draft { mesh, sources, ..made }
 }

@@ -3,14 +3,14 @@
 use glam::IVec3;
 use rayon::prelude::*;
 
-use super::prepare::Soup;
-use super::{Options, Precision, TriangleSource};
-use crate::contour::{Collapsed, Contour, ContourVertex, Merge, NO_TRIANGLE, collapse_same_voxel};
-use crate::fit::{Facets, NOT_KEPT, Side, Sides, Surface};
-use crate::lattice::Lattice;
-use crate::ldi::Expression;
+use super::{Precision, SurfaceOptions, TriangleSource};
+use crate::contour::{Collapsed, Contour, ContourVertex, Crossing, Edge, Ground, Merge, collapse_same_voxel};
+use crate::fit::{Facets, Side, Sides, Surface};
+use crate::lattice::{DistanceField, Lattice};
+use crate::ldi::{Expression, edge_crossing};
 use crate::mesh::{Plane, TriMesh, ValidateOptions, validate};
 use crate::progress::{Progress, Stopped};
+use crate::survey::{Soup, Survey};
 use crate::vote::{Lid, Winding};
 
 /// Before a fit, vertices of a voxel are merged where they stay this near to their planes, h. Larger ones
@@ -18,34 +18,50 @@ use crate::vote::{Lid, Winding};
 const FLAT: f64 = 0.01;
 
 /// Where the solid ends over a hole, on the lattice edge between two voxels.
-pub(super) fn lid(winding: &Winding<'_>, expression: &Expression, inside: IVec3, outside: IVec3) -> Option<Lid> {
+fn lid(winding: &Winding<'_>, expression: &Expression, inside: IVec3, outside: IVec3) -> Option<Lid> {
     // A stop shows again at the next check.
     winding.crossing(inside, outside, expression).ok().flatten()
 }
 
-/// Gives the contour's vertices that lie over holes a facet of their own each, numbered after the
-/// triangles of the soup: the plane of the lid there. Returns these planes.
+/// The crossings of lattice edges for the contour: with the surface, or with a lid over a hole.
+pub(super) fn crossings<'a>(
+    survey: &'a Survey,
+    winding: &'a Winding<'_>,
+    distance: &'a DistanceField,
+) -> impl Fn(Edge) -> Option<Crossing> + Sync + 'a {
+    move |edge| {
+        let lower_inside = distance.grid.get(edge.voxel) < 0.0;
+        if let Some((t, hit)) = edge_crossing(&survey.spans, edge.voxel, edge.axis as usize, lower_inside) {
+            return Some(Crossing { t, triangle: Some(hit.triangle()) });
+        }
+        let upper = edge.voxel + IVec3::AXES[edge.axis as usize];
+        let (inside, outside) = if lower_inside { (edge.voxel, upper) } else { (upper, edge.voxel) };
+        let t = lid(winding, &survey.expression, inside, outside)?.t;
+        Some(Crossing { t: if lower_inside { t } else { 1.0 - t }, triangle: None })
+    }
+}
+
+/// Puts the contour's vertices that lie over holes on a plane of their own each: that of the lid there. Returns these planes.
 pub(super) fn lids(
     contour: &mut Contour,
-    (soup, lattice): (&Soup, &Lattice),
+    survey: &Survey,
     winding: &Winding<'_>,
-    expression: &Expression,
     progress: &Progress,
 ) -> Result<Vec<Plane>, Stopped> {
     let bare: Vec<usize> =
-        (0..contour.vertices.len()).filter(|&v| contour.vertices[v].triangle == NO_TRIANGLE).collect();
+        (0..contour.vertices.len()).filter(|&v| contour.vertices[v].ground == Ground::Unknown).collect();
     let found = bare.par_iter().map(|&v| {
         progress.check()?;
         let ContourVertex { voxel, outside, .. } = contour.vertices[v];
-        Ok(lid(winding, expression, voxel, outside).map(|lid| {
-            let at = lattice.to_model(voxel.as_dvec3().lerp(outside.as_dvec3(), lid.t));
+        Ok(lid(winding, &survey.expression, voxel, outside).map(|lid| {
+            let at = survey.lattice.to_model(voxel.as_dvec3().lerp(outside.as_dvec3(), lid.t));
             (v, Plane { normal: lid.normal, offset: lid.normal.dot(at) })
         }))
     });
     let found: Vec<Option<(usize, Plane)>> = found.collect::<Result<_, Stopped>>()?;
     let mut planes = Vec::new();
     for (v, plane) in found.into_iter().flatten() {
-        contour.vertices[v].triangle = (soup.mesh.triangles.len() + planes.len()) as u32;
+        contour.vertices[v].ground = Ground::Plane(planes.len() as u32);
         planes.push(plane);
     }
     Ok(planes)
@@ -56,20 +72,20 @@ pub(super) fn merged(
     contour: Contour,
     facets: &Facets<'_>,
     lattice: &Lattice,
-    options: &Options,
+    options: &SurfaceOptions,
     progress: &Progress,
 ) -> Result<Surface, Stopped> {
     let merge = match (options.collapse, options.fit.is_some()) {
         (false, _) => {
-            let sides = contour.vertices.iter().map(|v| Sides::of([side(v, facets)])).collect();
+            let sides = contour.vertices.iter().map(|v| Sides::of(side(v, facets))).collect();
             return Ok(Surface::new(contour.mesh, sides));
         }
         (true, true) => Merge::Flat { within: FLAT },
         (true, false) => Merge::All,
     };
-    let plane = |facet: u32| {
-        let plane = facets.plane(Side::new(facet, false));
-        (plane.normal != glam::DVec3::ZERO).then_some((plane.normal, plane.offset))
+    let plane = |ground: Ground| {
+        let plane = facets.plane(Side::new(facets.facet_on(ground)?, false));
+        (plane.normal != glam::DVec3::ZERO).then_some(plane)
     };
     let collapsed = collapse_same_voxel(contour, lattice, &plane, merge, progress)?;
     let sides = sides(&collapsed, facets);
@@ -77,12 +93,10 @@ pub(super) fn merged(
 }
 
 /// The side of the facet that a vertex of the raw contour lies on.
-fn side(vertex: &ContourVertex, facets: &Facets<'_>) -> Side {
-    if vertex.triangle == NO_TRIANGLE {
-        return Side::NONE;
-    }
-    let normal = facets.plane(Side::new(vertex.triangle, false)).normal;
-    Side::new(vertex.triangle, normal.dot((vertex.outside - vertex.voxel).as_dvec3()) < 0.0)
+fn side(vertex: &ContourVertex, facets: &Facets<'_>) -> Option<Side> {
+    let facet = facets.facet_on(vertex.ground)?;
+    let normal = facets.plane(Side::new(facet, false)).normal;
+    Some(Side::new(facet, normal.dot((vertex.outside - vertex.voxel).as_dvec3()) < 0.0))
 }
 
 /// The facets that the vertices of a merged contour lie on.
@@ -90,17 +104,17 @@ fn sides(collapsed: &Collapsed, facets: &Facets<'_>) -> Vec<Sides> {
     let members = |v: usize| &collapsed.members[collapsed.starts[v] as usize..collapsed.starts[v + 1] as usize];
     (0..collapsed.contour.mesh.positions.len())
         .into_par_iter()
-        .map(|v| Sides::of(members(v).iter().map(|&m| side(&collapsed.raw[m as usize], facets))))
+        .map(|v| Sides::of(members(v).iter().filter_map(|&m| side(&collapsed.raw[m as usize], facets))))
         .collect()
 }
 
 /// Where the triangles of a surface come from.
 pub(super) fn sources(surface: &Surface, facets: &Facets<'_>, soup: &Soup) -> Vec<TriangleSource> {
-    let source = |t: u32| match surface.facet(facets, t) {
-        Some(facet) if (facet as usize) < soup.mesh.triangles.len() => {
-            TriangleSource::Operand { operand: soup.operands.of(facet) as u32, triangle: soup.source[facet as usize] }
+    let source = |t: u32| match surface.facet(facets, t).and_then(|facet| facets.triangle(facet)) {
+        Some(own) => {
+            TriangleSource::Operand { operand: soup.operands.of(own) as u32, triangle: soup.source[own as usize] }
         }
-        _ => TriangleSource::Closed,
+        None => TriangleSource::Closed,
     };
     (0..surface.mesh.triangles.len() as u32).into_par_iter().map(source).collect()
 }
@@ -114,8 +128,10 @@ pub(super) fn with_own_numbers(
     progress: &Progress,
 ) -> Result<TriMesh, Stopped> {
     let mut positions = surface.mesh.positions.clone();
-    for (p, &kept) in positions.iter_mut().zip(&surface.kept).filter(|(_, kept)| **kept != NOT_KEPT) {
-        *p = source.positions[kept as usize];
+    for (p, v) in positions.iter_mut().zip(0..) {
+        if let Some(own) = surface.source_vertex(v) {
+            *p = source.positions[own as usize];
+        }
     }
     if precision == Precision::Single || positions == surface.mesh.positions {
         return Ok(surface.mesh);

@@ -3,15 +3,20 @@
 use serde::Serialize;
 
 use super::apart::Apart;
+use super::sizing::TYPED;
 use super::stages::Stages;
 use super::{
-    BackendReport, CanalReport, Dropped, HollowReport, MorphologyReport, Outcome, StandingReport, ThickenReport,
-    TopologyReport, TriangleCounts, solid, topology,
+    CanalReport, Draft, Dropped, HollowReport, MorphologyReport, StandingReport, ThickenReport, TopologyReport,
+    TriangleCounts, TriangleSource, Warning, topology,
 };
-
-use crate::fit::FitReport;
+use crate::backend::BackendReport;
+use crate::fit::{FitReport, Surface};
+use crate::lattice::{Grid, Lattice};
+use crate::ldi::{Spans, THIN, ThinPlace, lengths, thin_places};
+use crate::mesh::Plane;
 use crate::orient::OrientReport;
-use crate::vote::VoteReport;
+use crate::survey::Survey;
+use crate::vote::{VoteReport, Votes, doubts};
 
 /// The account of one run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -54,11 +59,44 @@ pub struct Report {
     pub triangles: TriangleCounts,
     /// Wall-clock time of each stage, in order.
     pub stages: Vec<StageTime>,
-    /// Sentences a user should read, most important first.
-    pub warnings: Vec<String>,
+    /// What a user should know, most important first.
+    pub warnings: Vec<Warning>,
 }
 
 impl Report {
+    /// The parts that come from the rays and the votes. `finest`: the smallest voxel that is possible, model units.
+    pub(super) fn surveyed(survey: &Survey, votes: &Grid<Votes>, made_by: BackendReport, finest: f64) -> Self {
+        let (lattice, count) = (&survey.lattice, survey.count);
+        Self {
+            voxel: lattice.h,
+            dims: lattice.dims.to_array(),
+            lattice: true,
+            ldi: LdiReport {
+                rays: count.rays,
+                silent_rays: survey.silent_rays(),
+                hits: count.hits,
+                layers: count.layers,
+                made_by,
+            },
+            vote: doubts(votes, lattice),
+            thin: ThinReport::of(survey, finest),
+            orient: survey.soup.reports.clone(),
+            ..Self::default()
+        }
+    }
+
+    /// Adds what there is to say of the surface that was made.
+    pub(super) fn of_surface(
+        &mut self,
+        survey: &Survey,
+        planes: &[Plane],
+        surface: &Surface,
+        sources: &[TriangleSource],
+    ) {
+        self.thin.regions = thin_regions(&survey.spans, planes, surface, &survey.lattice);
+        self.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
+    }
+
     /// Triangles of the operands that stayed as they are, before simplification.
     pub fn kept(&self) -> usize {
         self.standing.triangles + self.fit.as_ref().map_or(0, |fit| fit.kept)
@@ -110,6 +148,48 @@ pub struct ThinReport {
     pub regions: Vec<ThinRegion>,
 }
 
+impl ThinReport {
+    /// Of the spans along the face directions; without regions. `finest`: the smallest voxel that is possible.
+    pub(super) fn of(survey: &Survey, finest: f64) -> Self {
+        let (lengths, h) = (lengths(&survey.spans), survey.lattice.h);
+        let shorter = |sorted: &[f64]| sorted.partition_point(|&length| length < THIN);
+        let percentile = lengths.spans.get(lengths.spans.len() / 100).map(|voxels| voxels * h);
+        let thin_spans = shorter(&lengths.spans);
+        Self {
+            spans: lengths.spans.len(),
+            thin_spans,
+            lost_spans: lengths.lost,
+            thin_gaps: shorter(&lengths.gaps),
+            thinnest: percentile,
+            voxel_that_keeps: percentile
+                .filter(|_| thin_spans > 0)
+                .map(|length| length / THIN)
+                .filter(|&h| h >= TYPED * finest),
+            regions: Vec::new(),
+        }
+    }
+}
+
+/// At most so many thin places are listed, each of at least so many rays: of 13 directions three or four look along any wall.
+const MOST_REGIONS: usize = 10;
+const LEAST_RAYS: usize = 4;
+
+/// Where walls and gaps are thinner than the lattice holds, of those that were not kept as they are.
+fn thin_regions(spans: &[Spans], planes: &[Plane], surface: &Surface, lattice: &Lattice) -> Vec<ThinRegion> {
+    let mut kept = vec![false; planes.len()];
+    let triangles = 0..surface.mesh.triangles.len() as u32;
+    triangles.filter_map(|t| surface.source_triangle(t)).for_each(|t| kept[t as usize] = true);
+    let region = |place: &ThinPlace| ThinRegion {
+        gap: place.gap,
+        min: lattice.to_model(place.min).to_array(),
+        max: lattice.to_model(place.max).to_array(),
+        rays: place.rays,
+        thinnest: place.least * lattice.h,
+    };
+    let places = thin_places(spans, planes, |t| kept[t as usize]);
+    places.iter().filter(|place| place.rays >= LEAST_RAYS).take(MOST_REGIONS).map(region).collect()
+}
+
 /// A place where walls or gaps are thinner than the lattice holds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ThinRegion {
@@ -135,11 +215,12 @@ pub struct StageTime {
 }
 
 /// Completes the report of a boolean.
-pub(super) fn finished(mut outcome: Outcome, apart: &Apart, stages: Stages<'_>) -> Outcome {
+pub(super) fn finished(mut outcome: Draft, apart: &Apart, stages: Stages<'_>) -> Draft {
     let report = &mut outcome.report;
     report.standing = apart.report();
     report.topology = Some(topology::compared(&outcome.mesh, &outcome.sources, apart));
-    report.warnings.extend(solid::warnings(report));
+    let warnings = Warning::of(report);
+    report.warnings.extend(warnings);
     report.stages = stages.finish();
     outcome
 }

@@ -4,8 +4,9 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
+use super::colours::classes;
 use super::kind::same;
-use super::{Outcome, TriangleSource, classes};
+use super::{Operand, TriangleSource};
 use crate::io::{Colours, Material, Rgba, TexCoords, TextureImage, TextureMap};
 use crate::mesh::{ClosestTree, TriMesh};
 
@@ -22,7 +23,7 @@ const INWARDS: f64 = 1e-3;
 /// A piece of an image, a material, a colour.
 type Class = (Option<u32>, Option<u32>, u32);
 
-/// A number for each triangle, for [`Options::classes`](super::Options::classes): the same for triangles of one colour, one material and one
+/// A number for each triangle: the same for triangles of one colour, one material and one
 /// piece of an image; coordinates without an image do not count. Nothing where there is nothing to keep apart.
 pub fn classes_of(mesh: &TriMesh, colours: Option<&Colours>, texture: Option<&TextureMap>) -> Vec<u32> {
     let of_colours = classes(colours);
@@ -41,30 +42,10 @@ pub fn classes_of(mesh: &TriMesh, colours: Option<&Colours>, texture: Option<&Te
     if all.iter().all(|number| *number == 0) { Vec::new() } else { all }
 }
 
-/// The textures of the result, from those of the operands; `None` when no operand has any. A triangle that is an operand's has what that has;
+/// The textures of a result, from those of the operands; `None` when no operand has any. A triangle that is an operand's has what that has;
 /// one that is made anew has the coordinates of its corners projected onto the triangle that it lies on, or onto that of the same piece of the texture
 /// under the corner; and one that is made up those of the nearest triangle.
-pub fn carry_texture(outcome: &Outcome, operands: &[(&TriMesh, Option<&TextureMap>)]) -> Option<TextureMap> {
-    carried_to(&outcome.mesh, &outcome.sources, operands)
-}
-
-/// The textures of `mesh`, a simpler surface of what `source` has `texture` for, by the triangles that its own grew out of.
-pub fn carry_texture_to_simpler(
-    mesh: &TriMesh,
-    origins: &[u32],
-    source: &TriMesh,
-    texture: &TextureMap,
-) -> Option<TextureMap> {
-    let sources: Vec<TriangleSource> =
-        origins.iter().map(|&triangle| TriangleSource::Operand { operand: 0, triangle }).collect();
-    carried_to(mesh, &sources, &[(source, Some(texture))])
-}
-
-fn carried_to(
-    result: &TriMesh,
-    sources: &[TriangleSource],
-    operands: &[(&TriMesh, Option<&TextureMap>)],
-) -> Option<TextureMap> {
+pub fn carry_texture(result: &TriMesh, sources: &[TriangleSource], operands: &[Operand<'_>]) -> Option<TextureMap> {
     let (mut whole, offsets) = joined(operands)?;
     let under = Under::of(result, sources, operands);
     let carried = |t: usize| {
@@ -77,7 +58,7 @@ fn carried_to(
             },
         };
         let (operand, triangle) = (name.0 as usize, name.1 as usize);
-        let Some(&(mesh, Some(texture))) = operands.get(operand) else { return (None, None) };
+        let Some(&Operand { mesh, texture: Some(texture), .. }) = operands.get(operand) else { return (None, None) };
         let places = |triangle: usize| texture.at(triangle, whole.downward);
         let own = places(triangle).map(|own| {
             let source = mesh.corners(triangle);
@@ -103,12 +84,24 @@ fn carried_to(
     Some(whole)
 }
 
+/// The textures of `mesh`, a simpler surface of what `source` has `texture` for, by the triangles that its own grew out of.
+pub fn carry_texture_to_simpler(
+    mesh: &TriMesh,
+    origins: &[u32],
+    source: &TriMesh,
+    texture: &TextureMap,
+) -> Option<TextureMap> {
+    let sources: Vec<TriangleSource> =
+        origins.iter().map(|&triangle| TriangleSource::Operand { operand: 0, triangle }).collect();
+    carry_texture(mesh, &sources, &[Operand { mesh: source, colours: None, texture: Some(texture) }])
+}
+
 /// The name, the colour and the image of a material.
 type Look = (String, Option<Rgba>, Option<u32>);
 
 /// The materials and images of all operands, each once, and for each operand the new numbers of its materials.
-fn joined(operands: &[(&TriMesh, Option<&TextureMap>)]) -> Option<(TextureMap, Vec<Vec<u32>>)> {
-    let mut textures = operands.iter().filter_map(|(_, texture)| *texture);
+fn joined(operands: &[Operand<'_>]) -> Option<(TextureMap, Vec<Vec<u32>>)> {
+    let mut textures = operands.iter().filter_map(|operand| operand.texture);
     let first = textures.next()?;
     let mut whole = TextureMap { downward: first.downward, ..TextureMap::default() };
     let place = |list: &mut Vec<TextureImage>, image: &TextureImage| {
@@ -119,8 +112,8 @@ fn joined(operands: &[(&TriMesh, Option<&TextureMap>)]) -> Option<(TextureMap, V
     };
     let mut numbers: FxHashMap<Look, u32> = FxHashMap::default();
     let mut offsets = Vec::new();
-    for (_, texture) in operands {
-        let Some(texture) = texture else {
+    for operand in operands {
+        let Some(texture) = operand.texture else {
             offsets.push(Vec::new());
             continue;
         };
@@ -155,10 +148,10 @@ struct Tree {
 }
 
 impl Tree {
-    fn of(operands: &[(&TriMesh, Option<&TextureMap>)], which: impl Iterator<Item = usize>) -> Self {
+    fn of(operands: &[Operand<'_>], which: impl Iterator<Item = usize>) -> Self {
         let names: Vec<(u32, u32)> =
-            which.flat_map(|n| (0..operands[n].0.triangles.len() as u32).map(move |t| (n as u32, t))).collect();
-        let corners = names.iter().map(|&(operand, t)| operands[operand as usize].0.corners(t as usize)).collect();
+            which.flat_map(|n| (0..operands[n].mesh.triangles.len() as u32).map(move |t| (n as u32, t))).collect();
+        let corners = names.iter().map(|&(operand, t)| operands[operand as usize].mesh.corners(t as usize)).collect();
         Self { tree: ClosestTree::new(corners), names }
     }
 
@@ -168,17 +161,17 @@ impl Tree {
 }
 
 impl Under {
-    fn of(result: &TriMesh, sources: &[TriangleSource], operands: &[(&TriMesh, Option<&TextureMap>)]) -> Self {
+    fn of(result: &TriMesh, sources: &[TriangleSource], operands: &[Operand<'_>]) -> Self {
         let is_made = |t: usize| match sources[t] {
             TriangleSource::Operand { operand, triangle } => {
-                let own = operands.get(operand as usize).map(|(mesh, _)| mesh.corners(triangle as usize));
+                let own = operands.get(operand as usize).map(|own| own.mesh.corners(triangle as usize));
                 own.is_some_and(|own| same(result.corners(t), own).is_none())
             }
             TriangleSource::Closed => false,
         };
         let made = (0..sources.len()).into_par_iter().any(is_made);
-        let piece = |(n, &(mesh, texture)): (usize, &(&TriMesh, Option<&TextureMap>))| {
-            let charts = texture.filter(|_| made)?.charts(mesh);
+        let piece = |(n, operand): (usize, &Operand<'_>)| {
+            let charts = operand.texture.filter(|_| made)?.charts(operand.mesh);
             Some((charts, Tree::of(operands, std::iter::once(n))))
         };
         let all = sources.contains(&TriangleSource::Closed);

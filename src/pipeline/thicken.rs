@@ -5,13 +5,15 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::frame::Frame;
-use super::morphology::{Run, usable, volume};
-use super::plan::{Offsets, area, check_offsets};
-use super::{Error, MorphologyOptions, Options, Outcome, TriangleSource, VoxelSize, boolean, kind, prepare, stages};
+use super::morphology::plan_offsets;
+use super::offsets::{Job, check_offsets, usable, volume};
+use super::plan::{Offsets, area};
+use super::stages::Stages;
+use super::{BooleanError, Changed, MorphologyError, Plan, Report, SurfaceOptions, TriangleSource, boolean, sizing};
 use crate::digits;
 use crate::ldi::Expression;
-use crate::mesh::{Pseudonormals, TriMesh};
-use crate::morphology::{Body, Operation, middles};
+use crate::mesh::{Bounds, Pseudonormals, Solid, TriMesh};
+use crate::morphology::{Body, OffsetError, middles};
 use crate::progress::{Progress, Stopped};
 
 /// Walls are at least this many voxels thick: of less the lattice makes no round edge.
@@ -38,14 +40,14 @@ pub enum SheetSide {
 }
 
 /// Options of [`thicken`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThickenOptions {
     /// The least thickness, model units; at least four voxels.
-    pub least: f64,
+    pub min: f64,
     /// Where open sheets grow.
     pub side: SheetSide,
-    /// How the operand becomes a solid first, and the voxel size.
-    pub solid: Options,
+    /// How the new surface is made.
+    pub surface: SurfaceOptions,
 }
 
 /// What was too thin.
@@ -63,99 +65,160 @@ pub struct ThickenReport {
     pub volume_after: f64,
 }
 
-/// Repairs `input` and lets its walls, and open sheets that bound nothing, grow until a ball of the least thickness fits
-/// everywhere in them. What is thick enough stays as it is.
+/// Why walls could not grow. Lengths are in model units.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ThickenError {
+    /// The walls are too thin for the voxels.
+    #[error("walls of {} need a voxel of at most {}", digits::number(*min), possible(*min, *voxel, *finest))]
+    WallsForVoxel {
+        /// The least thickness that was asked for.
+        min: f64,
+        /// The voxel.
+        voxel: f64,
+        /// The finest voxel that is possible.
+        finest: f64,
+    },
+    /// The walls are so thick that nothing of the shape would be left.
+    #[error(
+        "walls of {} are more than {MOST_LENGTHS} times as thick as the model is long ({}), so nothing of its \
+         shape would be left: look at the unit, or use at most {}",
+        digits::number(*min), digits::number(*longest), digits::rounded_down(MOST_LENGTHS * longest)
+    )]
+    WallsForModel {
+        /// The least thickness that was asked for.
+        min: f64,
+        /// The longest side of the model's box.
+        longest: f64,
+    },
+    /// There is neither a solid nor a sheet.
+    #[error("there is no triangle with an area")]
+    Empty,
+    /// The offset of what is thin gave nothing.
+    #[error(transparent)]
+    Offset(#[from] MorphologyError),
+    /// The union of the solid and what was grown gave nothing.
+    #[error(transparent)]
+    Union(#[from] BooleanError),
+}
+
+fn possible(min: f64, voxel: f64, finest: f64) -> String {
+    let fits = min / LEAST_VOXELS;
+    if fits < sizing::TYPED * finest {
+        let walls = digits::rounded_up(LEAST_VOXELS * finest);
+        return format!(
+            "{}, which is finer than is possible here: walls of at least {walls} are",
+            digits::number(fits)
+        );
+    }
+    format!("{}, and it is {}", digits::rounded_down(fits), digits::number(voxel))
+}
+
+/// Lets walls of a solid, and open sheets that bound nothing, grow until a ball of the least thickness fits
+/// everywhere in them. What is thick enough stays as it is. `surface`: the mesh that the solid was made of: what of it lies apart from
+/// the solid, outside, is an open sheet; all of it where there is no solid. An empty mesh has no sheets.
 ///
 /// # Errors
-/// Those of [`boolean`], but for a surface that encloses nothing; [`Error::VoxelSize`] for a thickness that the lattice
-/// cannot hold, or that is more than twice the model's longest side.
-pub fn thicken(input: &TriMesh, options: &ThickenOptions, progress: &Progress) -> Result<Outcome, Error> {
-    let least = usable(options.least)?;
-    let frame = Frame::of(std::slice::from_ref(input), &options.solid);
-    let input = &frame.local(std::slice::from_ref(input))[0];
-    let bounds = prepare::bounds(std::slice::from_ref(input))?;
-    let h = prepare::lattice(&bounds, options.solid.voxel)?.h;
-    if least < LEAST_VOXELS * h {
-        let (fits, finest) = (least / LEAST_VOXELS, prepare::finest(&bounds));
-        let [walls, voxel] = [least, h].map(digits::number);
-        let possible = if fits < prepare::TYPED * finest {
-            format!(
-                "{}, which is finer than is possible here: walls of at least {} are",
-                digits::number(fits),
-                digits::rounded_up(LEAST_VOXELS * finest)
-            )
-        } else {
-            format!("{}, and it is {voxel}", digits::rounded_down(fits))
-        };
-        return Err(Error::VoxelSize { reason: format!("walls of {walls} need a voxel of at most {possible}") });
-    }
-    let longest = bounds.size().max_element();
-    if least > MOST_LENGTHS * longest {
-        let [walls, length] = [least, longest].map(digits::number);
-        let most = digits::rounded_down(MOST_LENGTHS * longest);
-        return Err(Error::VoxelSize {
-            reason: format!(
-                "walls of {walls} are more than {MOST_LENGTHS} times as thick as the model is long ({length}), so nothing of its \
-                 shape would be left: look at the unit, or use at most {most}"
-            ),
-        });
-    }
-    let fixed = Options { voxel: VoxelSize::Length(h), ..options.solid.clone() };
-    check_offsets(input, &fixed, Offsets { count: 1, radius: least / 2.0, thin: true })?;
-    let solid = match boolean(std::slice::from_ref(input), &Expression::Operand(0), &fixed, progress) {
-        Ok(outcome) => Some(outcome),
-        Err(Error::NothingEnclosed { .. }) => None,
-        Err(error) => return Err(error),
-    };
-    let mut stages = stages::Stages::new(progress);
+/// See [`ThickenError`].
+pub fn thicken(
+    solid: Option<&Solid>,
+    surface: &TriMesh,
+    options: &ThickenOptions,
+    progress: &Progress,
+) -> Result<Changed, ThickenError> {
+    let (min, h) = checked(solid, surface, options)?;
+    let given: Vec<&TriMesh> = solid.iter().map(|solid| solid.mesh()).chain([surface]).collect();
+    let frame = Frame::of(&given, &options.surface);
+    let local = solid.map(|solid| frame.local(solid));
+    let fixed = options.surface.with_voxel(h);
+    let mut stages = Stages::new(progress);
     stages.begin("thin walls")?;
-    let body = solid.as_ref().map(|solid| Body::new(&solid.mesh, None));
+    let body = local.as_ref().map(|solid| Body::new(solid, None));
     let (mut thin, thin_area) = match &body {
-        Some(body) => middles(body, least, h, progress)?,
+        Some(body) => middles(body, min, h, progress)?,
         None => (TriMesh::default(), 0.0),
     };
-    let sheets = sheets(input, body.as_ref(), h, progress)?;
+    let sheets = sheets(&frame.local(surface), body.as_ref(), h, progress)?;
     let sheet_area = area(&sheets);
-    thin.append(&moved(sheets, options.side, least / 2.0));
-    let before = solid.as_ref().map_or(0.0, |solid| volume(&solid.mesh));
-    let mut outcome = match solid {
-        Some(solid) if thin.triangles.is_empty() => solid,
+    thin.append(&moved(sheets, options.side, min / 2.0));
+    let volume_before = local.as_ref().map_or(0.0, |solid| volume(solid));
+    let mut changed = match solid {
+        Some(solid) if thin.triangles.is_empty() => {
+            let lattice = sizing::lattice(&bounds(&given)?, fixed.voxel).map_err(MorphologyError::Lattice)?;
+            Changed::unchanged(solid, lattice, Report::default())
+        }
         solid => {
-            let grow = MorphologyOptions {
-                operation: Operation::Dilate,
-                radius: least / 2.0,
-                mitre: None,
-                solid: fixed.clone(),
-            };
-            let run = Run { solid: &thin, h, options: &grow, progress };
-            let grown = run.one_way(&Body::sheet(&thin), least / 2.0, &mut stages)?.surface.mesh;
-            united(solid, grown, &fixed, progress)?
+            let job = Job { solid: &thin, h, surface: &fixed, progress };
+            let mut grown = job.one_way(&Body::sheet(&thin), min / 2.0, 1.0, &mut stages)?.surface.mesh;
+            frame.mesh(&mut grown);
+            united(solid, &grown, &fixed, progress)?
         }
     };
-    outcome.report.stages.extend(stages.finish());
-    let after = volume(&outcome.mesh);
-    outcome.report.thicken =
-        Some(ThickenReport { least, thin_area, sheet_area, volume_before: before, volume_after: after });
-    Ok(frame.global(kind::counted(outcome, std::slice::from_ref(input))))
+    changed.report.stages.extend(stages.finish());
+    let volume_after = volume(&changed.solid);
+    changed.report.thicken = Some(ThickenReport { least: min, thin_area, sheet_area, volume_before, volume_after });
+    Ok(changed)
+}
+
+/// What [`thicken`] would cost.
+///
+/// # Errors
+/// Those of [`thicken`] that come before anything is made.
+pub fn plan_thicken(mesh: &TriMesh, options: &ThickenOptions) -> Result<Plan, ThickenError> {
+    let radius = usable(options.min / 2.0)?;
+    Ok(plan_offsets(mesh, &options.surface, Offsets { count: 1, radius, thin: true })?)
+}
+
+fn bounds(meshes: &[&TriMesh]) -> Result<Bounds, ThickenError> {
+    meshes.iter().filter_map(|mesh| mesh.bounds()).reduce(|a, b| a.union(&b)).ok_or(ThickenError::Empty)
+}
+
+/// The least thickness and the voxel, model units, if they go together.
+fn checked(solid: Option<&Solid>, surface: &TriMesh, options: &ThickenOptions) -> Result<(f64, f64), ThickenError> {
+    let radius = usable(options.min / 2.0)?;
+    let min = options.min;
+    let bounds = bounds(&solid.iter().map(|solid| solid.mesh()).chain([surface]).collect::<Vec<_>>())?;
+    let h = sizing::spacing(&bounds, options.surface.voxel).map_err(MorphologyError::Lattice)?;
+    if min < LEAST_VOXELS * h {
+        return Err(ThickenError::WallsForVoxel { min, voxel: h, finest: sizing::finest(&bounds) });
+    }
+    let longest = bounds.size().max_element();
+    if min > MOST_LENGTHS * longest {
+        return Err(ThickenError::WallsForModel { min, longest });
+    }
+    let of = if surface.triangles.is_empty() { solid.map_or(surface, |solid| solid.mesh()) } else { surface };
+    let fixed = options.surface.with_voxel(h);
+    let frame = Frame::of(&[of], &fixed);
+    check_offsets(&frame.local(of), &fixed, Offsets { count: 1, radius, thin: true })?;
+    Ok((min, h))
 }
 
 /// The union of the solid and what was grown, with triangles of the solid where it stays the surface.
-fn united(solid: Option<Outcome>, grown: TriMesh, options: &Options, progress: &Progress) -> Result<Outcome, Error> {
-    let (meshes, own) = match solid {
-        Some(solid) => (vec![solid.mesh, grown], solid.sources),
-        None => (vec![grown], Vec::new()),
+fn united(
+    solid: Option<&Solid>,
+    grown: &TriMesh,
+    surface: &SurfaceOptions,
+    progress: &Progress,
+) -> Result<Changed, BooleanError> {
+    let meshes: Vec<&TriMesh> = solid.iter().map(|solid| solid.mesh()).chain([grown]).collect();
+    let outcome = boolean(meshes.iter().copied(), &Expression::union(meshes.len()), &(*surface).into(), progress)?;
+    let own = |source: &TriangleSource| match *source {
+        TriangleSource::Operand { operand: 0, triangle } if solid.is_some() => Some(triangle),
+        _ => None,
     };
-    let with_solid = meshes.len() > 1;
-    let options = Options { classes: Vec::new(), ..options.clone() };
-    let mut outcome = boolean(&meshes, &Expression::union(meshes.len()), &options, progress)?;
-    for source in &mut outcome.sources {
-        *source = match *source {
-            TriangleSource::Operand { operand: 0, triangle } if with_solid => own[triangle as usize],
-            _ => TriangleSource::Closed,
-        };
+    let own = outcome.sources.iter().map(own).collect();
+    Ok(Changed { solid: outcome.solid, own, lattice: outcome.lattice, report: outcome.report })
+}
+
+impl From<Stopped> for ThickenError {
+    fn from(stopped: Stopped) -> Self {
+        Self::Offset(stopped.into())
     }
-    outcome.report.closed_triangles = outcome.sources.iter().filter(|s| **s == TriangleSource::Closed).count();
-    Ok(outcome)
+}
+
+impl From<OffsetError> for ThickenError {
+    fn from(error: OffsetError) -> Self {
+        Self::Offset(error.into())
+    }
 }
 
 /// Triangles that are no part of the solid's surface and lie outside of it; all where there is no solid.

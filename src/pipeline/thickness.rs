@@ -1,14 +1,14 @@
 //! How thick the walls of a mesh are, and how wide the gaps between them.
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::frame::Frame;
-use super::prepare::{self, MAX_RESOLUTION, TYPED};
-use super::{Error, Options, plan, solid};
-use crate::ldi::{Expression, Spans, THIN, ldis, spans, widths};
+use super::sizing::{self, MAX_RESOLUTION, TYPED};
+use super::{LatticeError, LimitError, Options, plan};
+use crate::ldi::{Expression, THIN};
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
+use crate::survey::{Cast, Soup, SoupError, Survey};
 
 /// The widths of walls and gaps, and the voxel that holds them. Model units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -48,36 +48,58 @@ pub struct LengthsReport {
 /// The percentiles of a [`LengthsReport`].
 pub const PERCENTILES: [usize; 6] = [1, 5, 25, 50, 75, 95];
 
+/// Why walls and gaps could not be measured.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ThicknessError {
+    /// Interrupted, or the deadline passed.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// There is no triangle with an area.
+    #[error("there is no triangle with an area")]
+    Empty,
+    /// The voxel size cannot be used with these coordinates.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// More memory or larger numbers would be needed than there are.
+    #[error(transparent)]
+    Limit(#[from] LimitError),
+}
+
 /// Measures the walls and gaps of `input` along the rays of all 13 directions.
 ///
 /// # Errors
-/// Those of [`super::boolean`] up to the rays.
-pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Result<ThicknessReport, Error> {
-    let operands = std::slice::from_ref(input);
-    let operands = &*Frame::of(operands, options).local(operands);
-    let bounds = prepare::bounds(operands)?;
-    let lattice = prepare::lattice(&bounds, options.voxel)?;
-    plan::check_limits(operands, &lattice, options, plan::Offsets::default())?;
+/// See [`ThicknessError`].
+pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Result<ThicknessReport, ThicknessError> {
+    let frame = Frame::of(&[input], &options.surface());
+    let mesh = frame.local(input);
+    let bounds = sizing::bounds([&*mesh]).map_err(|_| ThicknessError::Empty)?;
+    let lattice = sizing::lattice(&bounds, options.voxel)?;
+    plan::check_limits(&[&mesh], &lattice, &options.surface(), plan::Offsets::default())?;
     progress.stage("orient")?;
-    let mut soup = prepare::prepare(operands, options.orient, progress)?;
+    let soup = Soup::of(&[&mesh], options.orient, progress)?;
     progress.stage("ldi")?;
-    let mut layers = ldis(&soup.mesh, &lattice, 1, progress)?;
-    soup.turn_patches(&mut layers, options.orient, progress)?;
+    let cast = Cast::on_cpu(soup, &lattice, options.orient, progress)?;
     progress.stage("spans")?;
-    let rays = solid::count(&layers).rays;
-    let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, &Expression::Operand(0)));
-    let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
-    let found = widths(&spans, &soup.planes(&lattice));
-    let silent: usize = spans.iter().map(|spans| spans.silent_rays).sum();
+    let survey = Survey::of(cast, &Expression::Operand(0), progress)?;
+    let found = survey.widths();
     let walls = LengthsReport::of(&found.spans, lattice.h);
     let gaps = LengthsReport::of(&found.gaps, lattice.h);
     let thinnest = [&walls, &gaps].into_iter().filter(|l| l.count > 0).map(|l| l.percentiles[0]).reduce(f64::min);
-    let finest = prepare::finest(&bounds);
+    let finest = sizing::finest(&bounds);
     let voxel_that_keeps = thinnest.map(|width| width / THIN).filter(|&voxel| voxel >= TYPED * finest);
     let along = |voxel: f64| (bounds.size().max_element() / voxel).ceil() as u32;
     let resolution_that_keeps = voxel_that_keeps.map(|voxel| along(voxel).min(MAX_RESOLUTION));
-    let silent = silent as f64 / rays.max(1) as f64;
+    let silent = survey.silent_share();
     Ok(ThicknessReport { voxel: lattice.h, walls, gaps, silent, voxel_that_keeps, resolution_that_keeps, finest })
+}
+
+impl From<SoupError> for ThicknessError {
+    fn from(error: SoupError) -> Self {
+        match error {
+            SoupError::Stopped(stopped) => Self::Stopped(stopped),
+            SoupError::Empty { .. } => Self::Empty,
+        }
+    }
 }
 
 impl LengthsReport {

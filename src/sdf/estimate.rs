@@ -5,11 +5,10 @@ use std::sync::Arc;
 use glam::{DVec3, IVec3, Vec3};
 use rayon::prelude::*;
 
-use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Slot, brick_of};
+use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, Slot, brick_of, voxel_in_brick};
 use crate::ldi::Spans;
 use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
-use crate::vote::voxel_in_brick;
 
 /// One LDI point, relative to its brick.
 #[derive(Debug, Clone, Copy)]

@@ -7,9 +7,8 @@ use std::sync::Arc;
 use glam::IVec3;
 
 use super::smooth::FAR;
-use crate::lattice::{BRICK, Bricks, Grid, Lattice, Slot, brick_of, index_in_brick};
+use crate::lattice::{BRICK, Bricks, DistanceField, Grid, Lattice, Slot, brick_of, index_in_brick, voxel_in_brick};
 use crate::progress::{Progress, Stopped};
-use crate::vote::voxel_in_brick;
 
 /// A voxel on the front; the heap gives the nearest first, ties in lattice order.
 #[derive(PartialEq)]
@@ -33,11 +32,12 @@ impl PartialOrd for Front {
     }
 }
 
-/// Extends `near`, of which the voxels with a neighbour of the other sign are right, to all voxels
-/// of the lattice within `band` (in h) of the surface. Voxels farther away get ±`band`.
-pub fn march(near: &Grid<f32>, lattice: &Lattice, band: f32, progress: &Progress) -> Result<Grid<f32>, Stopped> {
+/// Extends `near`, counted in voxels, of which the voxels with a neighbour of the other sign are right, to all voxels of its
+/// lattice within `band` (voxels) of the surface. Voxels farther away get ±`band`.
+pub fn march(near: &DistanceField, band: f32, progress: &Progress) -> Result<DistanceField, Stopped> {
+    let (lattice, near) = (near.lattice, &near.grid);
     let band = band.max(FAR);
-    let bricks = Arc::new(dilated(&near.bricks, (band / BRICK as f32).ceil() as i32, lattice));
+    let bricks = Arc::new(dilated(&near.bricks, (band / BRICK as f32).ceil() as i32, &lattice));
     let mut grid = Grid::filled(bricks.clone(), band, -band, band);
     for (values, &brick) in grid.values.iter_mut().zip(bricks.active()) {
         for (n, value) in values.iter_mut().enumerate() {
@@ -60,7 +60,7 @@ pub fn march(near: &Grid<f32>, lattice: &Lattice, band: f32, progress: &Progress
             state.relax(voxel + step);
         }
     }
-    Ok(state.grid)
+    Ok(DistanceField::in_voxels(lattice, state.grid))
 }
 
 const STEPS: [IVec3; 6] = [IVec3::NEG_X, IVec3::X, IVec3::NEG_Y, IVec3::Y, IVec3::NEG_Z, IVec3::Z];

@@ -1,8 +1,9 @@
-//! Signed distance near the surface, in h, negative inside.
+//! Signed distance near the surface, counted in voxels, negative inside.
 //!
 //! The *robust* field (Bærentzen §3.3–3.4): the voted volume, estimates from the LDI points,
 //! smoothing, gradient correction, and fast marching to a wanted band. The *exact* field: the distance to the
-//! nearest triangle, at any point or over a lattice; over a lattice also by scan conversion, one polyhedron per feature. [`Levels`] are sides alone, plane by plane.
+//! nearest triangle, at any point or over a lattice; over a lattice also by scan conversion, one polyhedron per feature. [`Levels`] tell
+//! inside from outside alone, by the slice contours of each plane of voxels.
 
 pub mod characteristics;
 mod correct;
@@ -20,33 +21,34 @@ pub use levels::{Levels, LevelsError, levels_memory};
 pub use march::march;
 pub use smooth::{FAR, smooth};
 
-use crate::lattice::Grid;
+use crate::lattice::{DistanceField, Grid, Lattice};
 use crate::ldi::Spans;
 use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
 use crate::vote::Votes;
 
-/// The robust field in the active bricks of `votes`: right near the surface, ±√3 elsewhere.
+/// The robust field in the active bricks of `votes`, counted in voxels of `lattice`: right near the surface, ±√3 elsewhere.
 /// `planes` are those of the soup's triangles, in lattice coordinates.
 pub fn robust(
     spans: &[Spans],
     planes: &[Plane],
-    votes: &Grid<Votes>,
+    (votes, lattice): (&Grid<Votes>, &Lattice),
     options: &RobustOptions,
     progress: &Progress,
-) -> Result<Grid<f32>, Stopped> {
+) -> Result<DistanceField, Stopped> {
     let estimates = estimate(spans, planes, &votes.bricks, progress)?;
-    correct(smooth(votes, &estimates, options, progress)?, &estimates, options, progress)
+    let grid = correct(smooth(votes, &estimates, options, progress)?, &estimates, options, progress)?;
+    Ok(DistanceField::in_voxels(*lattice, grid))
 }
 
 /// Which voxels keep the side of their vote while the field is smoothed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Trust {
-    /// All: for votes that end in the winding number, whose level ½ is a smooth lid over a hole.
+    /// All voxels: right for votes that end in the winding number, whose level ½ is a smooth lid over a hole.
     All,
-    /// Those that are not doubtful and have points beside them; smoothing rounds the others.
+    /// Voxels whose vote is not doubtful and that have points beside them; smoothing rounds the others.
     Sure,
-    /// None, as in the paper: walls of one voxel wear away.
+    /// No voxel, as in the paper: walls of one voxel wear away.
     Nothing,
 }
 

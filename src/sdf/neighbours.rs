@@ -129,7 +129,7 @@ mod tests {
         let mut grid = Grid::filled(bricks.clone(), 1.0f32, -1.0, 1.0);
         for (values, &brick) in grid.values.iter_mut().zip(bricks.active()) {
             for (n, value) in values.iter_mut().enumerate() {
-                let p = brick * 8 + crate::vote::voxel_in_brick(n);
+                let p = brick * 8 + crate::lattice::voxel_in_brick(n);
                 if (p.as_vec3() - 7.6).length() < 4.3 || p.x % 5 == 0 {
                     *value = -1.0;
                 }

@@ -7,7 +7,7 @@ use crate::mesh::weld::first_of_equal;
 use crate::mesh::{TriMesh, flat_triangles, intersecting_groups};
 use crate::progress::{Progress, Stopped};
 
-/// What touches what.
+/// Which triangles and shells of a soup touch others.
 #[derive(Debug, Clone, Default)]
 pub struct Contacts {
     /// For each triangle, whether it meets another one, has no area, or has a corner where another vertex is, too.

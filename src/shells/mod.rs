@@ -24,7 +24,7 @@ use crate::mesh::{Bounds, TriMesh};
 pub enum Kind {
     /// Every edge has two triangles that run along it in opposite ways, and every vertex one fan.
     Closed,
-    /// The same, but for open edges.
+    /// Some edges have one triangle; otherwise the shell is like a closed one.
     Open,
     /// Some edge has more triangles or ones that run the same way, or some vertex has several fans.
     Torn,
@@ -33,11 +33,11 @@ pub enum Kind {
 /// An edge-connected part of one operand's surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shell {
-    /// Number of the operand.
+    /// The number of the operand that the shell is part of.
     pub operand: usize,
-    /// Its triangles in the soup, ascending.
+    /// The triangles of the shell by their numbers in the soup, ascending.
     pub triangles: Vec<u32>,
-    /// What its edges say.
+    /// What the edges of the shell say of it.
     pub kind: Kind,
     /// Whether each of its edges is run along as often one way as the other: its winding numbers are then whole.
     pub balanced: bool,
@@ -73,7 +73,7 @@ impl Shell {
 /// The shells of a soup.
 #[derive(Debug, Clone, Default)]
 pub struct Shells {
-    /// The shell of each triangle.
+    /// The number of the shell of each triangle.
     pub of: Vec<u32>,
     /// All shells, by their first triangle.
     pub list: Vec<Shell>,

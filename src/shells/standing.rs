@@ -26,9 +26,9 @@ pub struct StandingOptions<'a> {
 /// What becomes of a shell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fate {
-    /// It is not known without rays: it goes on to the lattice.
+    /// Nothing is known without rays: the shell goes on to the lattice.
     Open,
-    /// It is part of the result's surface. `turned`: its triangles face the wrong way in the operand; `reversed`: they do in the
+    /// The shell is part of the result's surface. `turned`: its triangles face the wrong way in the operand; `reversed`: they do in the
     /// result, whose inside lies on the other side of it (what is taken away leaves a void).
     Bounds {
         /// Whether it was inside out in its operand.
@@ -36,7 +36,7 @@ pub enum Fate {
         /// Whether the result has it the other way round than the operand, once that is right.
         reversed: bool,
     },
-    /// It lies inside of the result or outside of it, with both sides: it is left out.
+    /// The shell lies inside of the result or outside of it, with both sides: it is left out.
     Inside {
         /// Whether it was inside out in its operand.
         turned: bool,

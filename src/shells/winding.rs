@@ -84,18 +84,8 @@ mod tests {
 
     use super::*;
     use crate::ldi::Operands;
+    use crate::mesh::shapes::cuboid;
     use crate::shells::shells;
-
-    /// A box with integer corners, facing outwards.
-    fn cuboid(min: DVec3, max: DVec3) -> TriMesh {
-        let at = |k: u32| {
-            let pick = |bit: u32, low: f64, high: f64| if k >> bit & 1 == 1 { high } else { low };
-            DVec3::new(pick(0, min.x, max.x), pick(1, min.y, max.y), pick(2, min.z, max.z))
-        };
-        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-        let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-        TriMesh { positions: (0..8).map(at).collect(), triangles }
-    }
 
     proptest! {
         #[test]

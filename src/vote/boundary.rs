@@ -127,25 +127,14 @@ fn cancel(mut edges: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const QUADS: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-
-    fn corner(n: u32) -> DVec3 {
-        DVec3::new((n & 1) as f64, (n >> 1 & 1) as f64, (n >> 2) as f64)
-    }
+    use crate::mesh::shapes::{cuboid, taken_apart};
 
     /// The unit cube without some sides; with `apart`, no two triangles share a vertex.
     fn cube(missing: &[usize], apart: bool) -> TriMesh {
-        let mut mesh = TriMesh { positions: (0..8).map(corner).collect(), triangles: Vec::new() };
-        for (_, q) in QUADS.iter().enumerate().filter(|(side, _)| !missing.contains(side)) {
-            mesh.triangles.extend([[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
-        }
-        if apart {
-            let positions = mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]).collect();
-            let triangles = (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-            mesh = TriMesh { positions, triangles };
-        }
-        mesh
+        let mut mesh = cuboid(DVec3::ZERO, DVec3::ONE);
+        let sides = mesh.triangles.chunks(2).enumerate().filter(|(side, _)| !missing.contains(side));
+        mesh.triangles = sides.flat_map(|(_, pair)| pair.to_vec()).collect();
+        if apart { taken_apart(&mesh) } else { mesh }
     }
 
     fn loops(mesh: &TriMesh) -> Loops {
@@ -175,7 +164,8 @@ mod tests {
     #[test]
     fn loops_visit_no_point_twice_and_keep_multiple_edges() {
         // Two triangles that touch in a vertex, the first of them three times.
-        let positions = (0..5).map(|n| corner(n) + DVec3::splat(n as f64)).collect();
+        let corners = cuboid(DVec3::ZERO, DVec3::ONE).positions;
+        let positions = (0..5).map(|n| corners[n] + DVec3::splat(n as f64)).collect();
         let first = [0, 1, 2];
         let mesh = TriMesh { positions, triangles: vec![first, [2, 3, 4], first, first] };
         let found = loops(&mesh);

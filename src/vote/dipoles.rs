@@ -47,7 +47,8 @@ struct Node {
     children: u32,
 }
 
-/// A tree over the triangles of one operand.
+/// The winding number of one operand at any point, by a tree over its triangles: groups of triangles far from the point
+/// count as one dipole.
 #[derive(Debug, Clone)]
 pub struct WindingTree {
     nodes: Vec<Node>,

@@ -3,8 +3,8 @@
 use glam::IVec3;
 use rustc_hash::FxHashMap;
 
-use super::{DoubtfulRegion, VoteReport, Votes, voxel_in_brick};
-use crate::lattice::{BRICK, Grid, Lattice};
+use super::{DoubtfulRegion, VoteReport, Votes};
+use crate::lattice::{BRICK, Grid, Lattice, voxel_in_brick};
 
 /// At most this many regions are listed.
 const REGIONS: usize = 10;

@@ -29,7 +29,7 @@ const MOST_STEPS: u32 = 100;
 pub struct Lid {
     /// Place on the edge, 0 at its inside voxel, 1 at its outside one.
     pub t: f64,
-    /// The surface's unit normal there, out of the result. Model and lattice axes are the same.
+    /// The unit normal of the closing surface there, out of the result. Model and lattice axes are the same.
     pub normal: DVec3,
 }
 
@@ -128,7 +128,7 @@ impl Passage {
 
 /// The winding number at a place of an edge.
 #[derive(Debug, Clone, Copy)]
-struct Sample {
+struct EdgeSample {
     t: f64,
     /// Over ½, but for a whole number.
     above: f64,
@@ -137,7 +137,7 @@ struct Sample {
     slope: f64,
 }
 
-impl Sample {
+impl EdgeSample {
     /// Whether the tangent passes ½ at most `length` (negative: backwards) from here.
     fn heads_for_zero_within(&self, length: f64) -> bool {
         let change = self.slope * length;
@@ -154,7 +154,7 @@ struct Piece {
 }
 
 impl Piece {
-    fn between(a: Sample, b: Sample) -> Self {
+    fn between(a: EdgeSample, b: EdgeSample) -> Self {
         let length = b.t - a.t;
         let change = b.above - a.above;
         let passes = (a.above > 0.0) != (b.above > 0.0) && change.abs() < 0.5;
@@ -179,7 +179,7 @@ impl Search<'_> {
     /// Adds the passages of the edge, cutting it where it is unclear which way the phase turns and
     /// where it may pass and come back.
     fn run(&self, pieces: u32, found: &mut Vec<Passage>) {
-        let samples: Vec<Sample> = (0..=pieces).map(|k| self.sample(f64::from(k) / f64::from(pieces))).collect();
+        let samples: Vec<EdgeSample> = (0..=pieces).map(|k| self.sample(f64::from(k) / f64::from(pieces))).collect();
         let mut stack: Vec<_> = samples.windows(2).rev().map(|ends| ([ends[0], ends[1]], MOST_HALVINGS)).collect();
         let mut cuts = MOST_CUTS;
         while let Some(([a, b], halvings)) = stack.pop() {
@@ -194,14 +194,14 @@ impl Search<'_> {
         }
     }
 
-    fn sample(&self, t: f64) -> Sample {
+    fn sample(&self, t: f64) -> EdgeSample {
         let phase = self.view.at(self.edge.at(t));
-        Sample { t, above: phase.above, gradient: phase.gradient, slope: phase.gradient.dot(self.edge.way) }
+        EdgeSample { t, above: phase.above, gradient: phase.gradient, slope: phase.gradient.dot(self.edge.way) }
     }
 
     /// The passage between two samples on different sides of it: Newton's method, kept between
     /// them.
-    fn passage(&self, a: Sample, b: Sample) -> Option<Passage> {
+    fn passage(&self, a: EdgeSample, b: EdgeSample) -> Option<Passage> {
         let leaving = a.above > 0.0;
         let (length, change) = (b.t - a.t, b.gradient - a.gradient);
         let (mut low, mut high) = (a.t, b.t);
@@ -232,7 +232,7 @@ impl Search<'_> {
 }
 
 /// Where, between 0 and 1, the cubic through two samples of different sign with their slopes is 0.
-fn zero_of_cubic(a: Sample, b: Sample) -> f64 {
+fn zero_of_cubic(a: EdgeSample, b: EdgeSample) -> f64 {
     let length = b.t - a.t;
     let (rise, first, last) = (b.above - a.above, a.slope * length, b.slope * length);
     let (square, cube) = (3.0 * rise - 2.0 * first - last, first + last - 2.0 * rise);

@@ -27,7 +27,7 @@ pub(super) struct LoopTree {
 
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    group: Group,
+    group: FarLoops,
     /// Distance of the farthest point from the centre.
     radius: f64,
     /// Of a single loop: its first, middle and last point.
@@ -38,7 +38,7 @@ struct Node {
 
 /// Any surface over loops, seen from afar.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Group {
+pub(super) struct FarLoops {
     pub(super) centre: DVec3,
     /// The area vector.
     pub(super) dipole: DVec3,
@@ -49,7 +49,7 @@ pub(super) struct Group {
 /// What is far in groups, and what is near.
 #[derive(Debug, Clone)]
 pub(super) struct Nearby<'t> {
-    far: Vec<&'t Group>,
+    far: Vec<&'t FarLoops>,
     near: Loops,
 }
 
@@ -75,7 +75,13 @@ impl LoopTree {
     /// Calls `far` with what is far from all points within `radius` of `centre`: nodes at least `apart`
     /// times as far from the centre as both radii together. Returns the rest: loops on which edges stand
     /// for the parts that are far.
-    pub(super) fn visit<'t>(&'t self, centre: DVec3, radius: f64, apart: f64, mut far: impl FnMut(&'t Group)) -> Loops {
+    pub(super) fn visit<'t>(
+        &'t self,
+        centre: DVec3,
+        radius: f64,
+        apart: f64,
+        mut far: impl FnMut(&'t FarLoops),
+    ) -> Loops {
         let mut is_far = |node: &'t Node| {
             let is_far = node.group.centre.distance(centre) > apart * (radius + node.radius);
             if is_far {
@@ -135,7 +141,7 @@ impl Nearby<'_> {
     }
 }
 
-impl Group {
+impl FarLoops {
     /// The solid angle seen from `p` and its gradient.
     fn solid_angle(&self, p: DVec3) -> (f64, DVec3) {
         let r = self.centre - p;
@@ -180,7 +186,7 @@ struct Builder<'l> {
 
 impl<'l> Builder<'l> {
     fn node(&mut self, range: [usize; 2]) -> u32 {
-        let group = Group { centre: DVec3::ZERO, dipole: DVec3::ZERO, quadrupole: DMat3::ZERO };
+        let group = FarLoops { centre: DVec3::ZERO, dipole: DVec3::ZERO, quadrupole: DMat3::ZERO };
         self.nodes.push(Node { group, radius: 0.0, triangle: None, children: [0; 2] });
         self.ranges.push(range);
         self.nodes.len() as u32 - 1

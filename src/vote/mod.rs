@@ -18,7 +18,7 @@ pub use dipoles::WindingTree;
 pub use doubt::doubts;
 pub use grow::vote_near_surface;
 pub use lid::Lid;
-pub use tally::{Jury, Votes, voxel_in_brick};
+pub use tally::{Jury, Votes};
 pub use winding::Winding;
 
 use serde::Serialize;

@@ -32,7 +32,7 @@ pub(super) struct Phase {
 }
 
 impl Phase {
-    /// From `turn`, in the direction of exp(2πi w), and the sum of [`Span::current`]s.
+    /// From `turn`, in the direction of exp(2πi w), and the sum of [`SeenEdge::current`]s.
     pub(super) fn new(turn: Product, currents: DVec3) -> Self {
         Self { above: turn.above(), gradient: currents / FOUR_PI }
     }
@@ -80,7 +80,7 @@ impl Sight {
 
 /// What there is to an edge seen from a point.
 #[derive(Debug, Clone, Copy)]
-struct Span {
+struct SeenEdge {
     ends: [Sight; 2],
     cross: DVec3,
     /// The product of the distances, and the same times one plus the cosine between the ways.
@@ -88,7 +88,7 @@ struct Span {
     open: f64,
 }
 
-impl Span {
+impl SeenEdge {
     #[inline]
     fn new(a: Sight, b: Sight) -> Self {
         let (cross, dot, product) = (a.way.cross(b.way), a.way.dot(b.way), a.distance * b.distance);
@@ -141,7 +141,7 @@ impl Loops {
 
     /// The product of the edges' turns; calls `once` with each edge.
     #[inline]
-    fn turn_with(&self, p: DVec3, once: impl FnMut(&Span)) -> Product {
+    fn turn_with(&self, p: DVec3, once: impl FnMut(&SeenEdge)) -> Product {
         let (mut turn, mut good) = self.turn_towards(AWAY[0], p, once);
         for &apex in &AWAY[1..] {
             if good {
@@ -154,14 +154,14 @@ impl Loops {
 
     /// The product with the point far off in direction `apex`, and whether no vertex spoils it.
     #[inline]
-    fn turn_towards(&self, apex: DVec3, p: DVec3, mut each: impl FnMut(&Span)) -> (Product, bool) {
+    fn turn_towards(&self, apex: DVec3, p: DVec3, mut each: impl FnMut(&SeenEdge)) -> (Product, bool) {
         let (mut turn, mut spoilt) = (Product::ONE, false);
         for points in self.each() {
             let mut before = Sight::new(p, points[points.len() - 1]);
             for some in points.chunks(4) {
                 for &point in some {
                     let here = Sight::new(p, point);
-                    let span = Span::new(before, here);
+                    let span = SeenEdge::new(before, here);
                     let factor = span.turn(apex);
                     spoilt |= span.spoils(factor);
                     turn.times(factor);

@@ -3,7 +3,7 @@
 use glam::IVec3;
 
 use super::{VoteRule, Winding};
-use crate::lattice::{BRICK, BRICK_VOXELS, Direction, index_in_brick};
+use crate::lattice::{BRICK, BRICK_VOXELS, Direction, index_in_brick, voxel_in_brick};
 use crate::ldi::{Expression, Hit, Operands, Spans};
 use crate::progress::Stopped;
 
@@ -17,16 +17,16 @@ const ENOUGH: u8 = 10;
 /// What the directions say of one voxel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Votes {
-    /// Directions that say inside.
+    /// Number of directions that say inside.
     pub inside: u8,
-    /// Directions that say anything.
+    /// Number of directions that say anything at all.
     pub valid: u8,
-    /// The decision.
+    /// Whether the voxel is inside, as the rule decided by these votes.
     pub is_inside: bool,
 }
 
 impl Votes {
-    /// Few valid votes, or a minority of more than a quarter of them.
+    /// Whether the votes are too few, or the minority of more than a quarter too large, for the decision to be trusted.
     #[inline]
     pub fn doubtful(self) -> bool {
         self.valid < FEW || 4 * self.inside.min(self.valid - self.inside) > self.valid
@@ -38,7 +38,7 @@ impl Votes {
         self.valid >= ENOUGH && (self.inside == 0 || self.inside == self.valid)
     }
 
-    /// All 13 directions say the same.
+    /// Whether all 13 directions say the same.
     #[inline]
     pub fn unanimous(self) -> bool {
         self.valid == 13 && (self.inside == 0 || self.inside == 13)
@@ -156,12 +156,6 @@ impl Jury<'_> {
         let inside: Vec<bool> = counters.iter().map(|&c| c >= 1).collect();
         self.expression.evaluate(&inside)
     }
-}
-
-/// Lattice offset of voxel number `n` of a brick.
-#[inline]
-pub fn voxel_in_brick(n: usize) -> IVec3 {
-    IVec3::new((n & 7) as i32, (n >> 3 & 7) as i32, (n >> 6) as i32)
 }
 
 /// Fills the masks of the rays of one direction that meet the brick at `base`.

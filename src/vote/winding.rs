@@ -26,7 +26,7 @@ pub struct Winding<'a> {
 }
 
 impl<'a> Winding<'a> {
-    /// Of the operands of `soup`, at the voxels of `lattice`.
+    /// The winding numbers of the operands of `soup` at the voxels of `lattice`.
     pub fn new(soup: &'a TriMesh, operands: &'a Operands, lattice: &Lattice, progress: &Progress) -> Self {
         Self {
             soup,

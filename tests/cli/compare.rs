@@ -38,7 +38,7 @@ fn a_coloured_map() {
     assert_eq!(names_in(folder.path()), ["map.ply"]);
     let path = folder.path().join("map.ply");
     let map = meshwright::io::read(&path).expect("it is sound");
-    let torus = meshwright::io::read("testdata/torus.ply".as_ref()).expect("it is sound");
+    let torus = meshwright::io::read("testdata/torus.ply").expect("it is sound");
     assert_eq!(map.mesh, torus.mesh);
     let bytes = std::fs::read(&path).expect("it is there");
     let header = String::from_utf8_lossy(&bytes[..600.min(bytes.len())]).into_owned();

@@ -19,7 +19,7 @@ fn kept_rebuilt_and_made_up_are_told_apart() {
         let line = format!("repair testdata/{name} -o OUT/out.ply --map OUT/map.ply --resolution {resolution} --force");
         let run = run_in(&folder, &format!("{line} --json"));
         let report = run.exits(0).json();
-        let input = io::read(format!("testdata/{name}").as_ref()).expect("our own").mesh;
+        let input = io::read(format!("testdata/{name}")).expect("our own").mesh;
         let map = io::read(&folder.path().join("map.ply")).expect("a map");
         let bytes = std::fs::read(folder.path().join("map.ply")).expect("a map");
         let text = String::from_utf8_lossy(&bytes).into_owned();

@@ -40,7 +40,7 @@ fn field(folder: &TempDir, name: &str) -> Field {
 }
 
 fn mesh(name: &str) -> TriMesh {
-    meshwright::io::read(name.as_ref()).expect("it is sound").mesh
+    meshwright::io::read(name).expect("it is sound").mesh
 }
 
 impl Field {

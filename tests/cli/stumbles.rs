@@ -3,7 +3,7 @@
 use std::fs;
 
 use glam::DVec3;
-use meshwright::io::{Format, Unit, WriteOptions, read, write};
+use meshwright::io::{Format, Unit, WriteOptions, read, write_with};
 use meshwright::mesh::TriMesh;
 use serde_json::Value;
 use tempfile::TempDir;
@@ -30,7 +30,7 @@ fn cube_and_plate(thickness: f64) -> TriMesh {
 fn saved(folder: &TempDir, name: &str, mesh: &TriMesh, unit: Option<Unit>) {
     let path = folder.path().join(name);
     let format = Format::from_path(&path).expect("a mesh");
-    write(&path, mesh, &WriteOptions { unit, ..WriteOptions::new(format) }).expect("written");
+    write_with(&path, mesh, &WriteOptions { unit, ..WriteOptions::new(format) }).expect("written");
 }
 
 #[test]

@@ -121,7 +121,7 @@ fn split_writes_every_body_and_keeps_voids_with_theirs() {
     let mut aside = ball.clone();
     aside.positions.iter_mut().for_each(|p| p.x += 100.0);
     all.append(&aside);
-    io::write(&folder.path().join("two.ply"), &all, &io::WriteOptions::new(io::Format::Ply)).expect("written");
+    io::write(folder.path().join("two.ply"), &all).expect("written");
     let json = run_in(&folder, "split OUT/two.ply -o OUT/parts --json").exits(0).json();
     assert_eq!((&json["options"]["bodies"], &json["options"]["voids"]), (&2.into(), &1.into()));
     assert_eq!(names_in(&folder.path().join("parts")), ["part_001.ply", "part_002.ply"]);

@@ -1,17 +1,18 @@
 //! The exact distance by looking at all triangles, and what must agree with it: points, lattices, characteristics, prisms, levels.
 
 use glam::{DVec3, IVec3};
-use meshwright::lattice::{Grid, Lattice, Slot};
+use meshwright::lattice::{DistanceField, Lattice, Slot};
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
 use meshwright::sdf::Levels;
 use meshwright::sdf::characteristics::characteristics;
 use meshwright::sdf::exact::{Band, ExactDistance, ExactOptions, PointSign, Sign, exact};
 use meshwright::sdf::prism::prism;
-use meshwright::vote::voxel_in_brick;
 use rayon::prelude::*;
 
-use super::fields::apart;
+use super::fields::{apart, voxel};
+use super::shapes::{gear, hard, knot, stack, turned};
+use super::{read, sample};
 
 /// A lattice of spacing `h` around the mesh and `room` (h) beyond.
 pub fn lattice(mesh: &TriMesh, h: f64, room: i32) -> Lattice {
@@ -21,9 +22,31 @@ pub fn lattice(mesh: &TriMesh, h: f64, room: i32) -> Lattice {
     lattice
 }
 
-/// Voxel number `n` of brick `brick`.
-pub fn voxel(brick: glam::IVec3, n: usize) -> glam::IVec3 {
-    brick * 8 + voxel_in_brick(n)
+/// A closed mesh, a lattice around it, and the band in which its distance is looked at.
+pub struct Case {
+    pub name: &'static str,
+    pub mesh: TriMesh,
+    pub lattice: Lattice,
+    /// In voxels.
+    pub band: f64,
+}
+
+/// What every way to the exact field is tried on: meshes that are hard in one way or another, and parts.
+pub fn cases() -> Vec<Case> {
+    let hard = hard().into_iter().map(|(name, mesh)| (name, mesh, 1.0 / 30.0, 4.0));
+    let parts = [
+        ("saddle", read(&sample("monkey_saddle.off")), 64.0, 6.4),
+        ("knot", knot(96, 16), 60.0, 3.0),
+        ("gear", turned(gear(24), 0.3), 60.0, 3.0),
+        ("stack", stack(0.4), 40.0, 3.0),
+    ];
+    let along = |(name, mesh, resolution, band): (_, TriMesh, f64, f64)| {
+        let h = mesh.bounds().expect("triangles").size().max_element() / resolution;
+        (name, mesh, h, band)
+    };
+    let all = hard.chain(parts.into_iter().map(along));
+    all.map(|(name, mesh, h, band)| Case { lattice: lattice(&mesh, h, f64::ceil(band) as i32), name, mesh, band })
+        .collect()
 }
 
 /// Distance from a triangle, by its plane and its three sides.
@@ -67,7 +90,7 @@ fn options(band: Band) -> ExactOptions {
     ExactOptions { band, max_memory: None }
 }
 
-fn field(mesh: &TriMesh, lattice: &Lattice, sign: Sign<'_>, band: Band) -> Grid<f32> {
+fn field(mesh: &TriMesh, lattice: &Lattice, sign: Sign<'_>, band: Band) -> DistanceField {
     exact(mesh, lattice, sign, &options(band), &Progress::none()).expect("a field")
 }
 
@@ -103,7 +126,7 @@ pub fn check_points(name: &str, mesh: &TriMesh) {
 
 /// Checks every voxel of every brick of the lattice against the point query; returns how many are in the band.
 pub fn check_lattice(name: &str, mesh: &TriMesh, lattice: &Lattice, band: Band) -> usize {
-    let grid = field(mesh, lattice, Sign::Pseudonormal, band);
+    let grid = field(mesh, lattice, Sign::Pseudonormal, band).grid;
     let point = ExactDistance::of(mesh, PointSign::Pseudonormal);
     let width = if let Band::Within(width) = band { width.max(1.0) } else { f64::INFINITY };
     let counts = (lattice.dims + 7) / 8;
@@ -136,8 +159,8 @@ pub fn check_lattice(name: &str, mesh: &TriMesh, lattice: &Lattice, band: Band) 
 
 /// Compares all voxels of all bricks of the lattice with the exact field; returns how many are in the band.
 pub fn check_characteristics(name: &str, mesh: &TriMesh, lattice: &Lattice, band: Band) -> usize {
-    let grid = characteristics(mesh, lattice, &options(band), &Progress::none()).expect("a field");
-    let truth = field(mesh, lattice, Sign::Pseudonormal, band);
+    let grid = characteristics(mesh, lattice, &options(band), &Progress::none()).expect("a field").grid;
+    let truth = field(mesh, lattice, Sign::Pseudonormal, band).grid;
     assert_eq!((grid.inside, grid.outside), (truth.inside, truth.outside), "{name}");
     let (end, width) = ((lattice.dims + 7) / 8 * 8, truth.outside);
     let mut within = 0;
@@ -175,9 +198,9 @@ pub fn voxels(lattice: &Lattice) -> impl Iterator<Item = IVec3> + use<> {
 
 /// Compares the sides by levels with those by normals for all voxels that are off the surface; returns how many are inside.
 pub fn same_sides(name: &str, mesh: &TriMesh, around: &Lattice, band: Band) -> usize {
-    let by_normals = field(mesh, around, Sign::Pseudonormal, band);
-    let by_levels =
-        field(mesh, around, Sign::Levels(&Levels::of(mesh, around, &Progress::none()).expect("levels")), band);
+    let by_normals = field(mesh, around, Sign::Pseudonormal, band).grid;
+    let levels = Levels::of(mesh, around, &Progress::none()).expect("levels");
+    let by_levels = field(mesh, around, Sign::Levels(&levels), band).grid;
     let mut inside = 0;
     for v in voxels(around) {
         let (truth, got) = (by_normals.get(v), by_levels.get(v));

@@ -1,15 +1,16 @@
 //! Distances over lattices.
 
 use glam::IVec3;
-use meshwright::lattice::Grid;
-use meshwright::vote::voxel_in_brick;
+use meshwright::lattice::{DistanceField, voxel_in_brick};
 
-fn voxel(brick: IVec3, n: usize) -> IVec3 {
+/// Voxel number `n` of brick `brick`.
+pub fn voxel(brick: IVec3, n: usize) -> IVec3 {
     brick * 8 + voxel_in_brick(n)
 }
 
 /// The largest difference in the band, voxels with other sides, and voxels of the band.
-pub fn apart(truth: &Grid<f32>, found: &Grid<f32>, band: f64) -> (f64, usize, usize) {
+pub fn apart(truth: &DistanceField, found: &DistanceField, band: f64) -> (f64, usize, usize) {
+    let (truth, found) = (&truth.grid, &found.grid);
     let (mut most, mut wrong, mut count) = (0.0f64, 0, 0);
     for (n, &brick) in truth.bricks.active().iter().enumerate() {
         for k in 0..512 {

@@ -10,6 +10,7 @@ pub mod fields;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod proofs;
+pub mod repaired;
 pub mod shapes;
 pub mod stages;
 pub mod textured;

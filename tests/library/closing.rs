@@ -1,12 +1,13 @@
 //! Closings and openings keep their word: what a ball of the radius reaches stays, and what it does not reach is filled, whatever the
 //! voxels.
 
+use crate::common::repaired::{morphed, without_canals};
 use crate::common::shapes::{cuboid, torus, turned};
 use glam::{DMat3, DVec3};
 use meshwright::mesh::{TriMesh, ValidateOptions, Validity, validate};
 use meshwright::morphology::Operation::{self, Close, Dilate, Erode, Open};
 use meshwright::pipeline::{
-    CanalOptions, MorphologyOptions, MorphologyReport, Options, Outcome, Remove, VoxelSize, canals, morphology,
+    CanalOptions, MorphologyOptions, MorphologyReport, Outcome, Remove, SurfaceOptions, VoxelSize,
 };
 use meshwright::progress::Progress;
 use meshwright::sdf::exact::{ExactDistance, PointSign};
@@ -21,11 +22,11 @@ struct Done {
 }
 
 fn done(mesh: &TriMesh, operation: Operation, radius: f64, resolution: u32) -> Done {
-    let solid = Options::new(VoxelSize::Along(resolution));
-    let options = MorphologyOptions { operation, radius, mitre: None, solid };
-    let outcome = morphology(mesh, &options, &Progress::none()).expect("a solid");
+    let surface = SurfaceOptions::new(VoxelSize::Along(resolution));
+    let options = MorphologyOptions { operation, radius, sharp: None, surface };
+    let outcome = morphed(mesh, &options).expect("a solid");
     let options = ValidateOptions { self_intersections: true, weld: true };
-    let validity = validate(&outcome.mesh, &options, &Progress::none()).expect("not stopped");
+    let validity = validate(&outcome.solid, &options, &Progress::none()).expect("not stopped");
     assert!(validity.is_valid(), "{:?}", validity.problems());
     let report = outcome.report.morphology.clone().expect("morphology was done");
     Done { outcome, validity, report }
@@ -43,7 +44,7 @@ fn check_closings(mesh: &TriMesh, gap: f64, resolutions: &[u32], passes: (usize,
             assert!(report.volume_after > report.volume_before * (1.0 - 1e-4), "{what}");
             // Inner edges are rounded in any case.
             if ratio < 0.5 && mesh.positions.len() == 16 && passes.0 == 2 {
-                assert_eq!(&outcome.mesh, mesh, "{what}");
+                assert_eq!(&outcome.solid, mesh, "{what}");
             }
         }
     }
@@ -114,7 +115,7 @@ fn eight_plates_with_gaps_wider_than_the_ball_come_back_as_they_are() {
     let mesh = turned(mesh, 0.4);
     let Done { outcome, report, .. } = done(&mesh, Close, 0.45, 128);
     assert_eq!(report.made, 0);
-    assert_eq!(outcome.mesh.triangles.len(), mesh.triangles.len());
+    assert_eq!(outcome.solid.triangles.len(), mesh.triangles.len());
 }
 
 #[test]
@@ -185,7 +186,7 @@ fn what_balls_reach_stays_open_and_what_they_do_not_reach_is_filled() {
         assert!(yes.len() > 500, "{} points", yes.len());
         for resolution in [18, 45] {
             let Done { outcome, report, .. } = done(&mesh, Close, radius, resolution);
-            let distance = ExactDistance::of(&outcome.mesh, PointSign::Pseudonormal);
+            let distance = ExactDistance::of(&outcome.solid, PointSign::Pseudonormal);
             let signed = |p: &DVec3| distance.at(*p).expect("not empty").signed;
             let within = 0.6 * report.voxel;
             let deepest = yes.iter().map(signed).fold(f64::INFINITY, f64::min);
@@ -252,10 +253,9 @@ fn canals_that_the_ball_passes_are_not_listed() {
                 let options = CanalOptions {
                     max_diameter: diameter * gap,
                     remove: Remove::None,
-                    solid: Options::new(VoxelSize::Along(resolution)),
+                    surface: SurfaceOptions::new(VoxelSize::Along(resolution)),
                 };
-                let found = canals(&mesh, &options, &Progress::none()).expect("a solid");
-                let list = found.outcome.report.canals.expect("canals were looked for").canals;
+                let list = without_canals(&mesh, &options).expect("a solid").1.canals;
                 assert_eq!(list.len(), count, "{diameter} gaps, {resolution} voxels: {list:?}");
                 assert!(list.iter().all(|canal| canal.diameter < diameter * gap), "{list:?}");
                 assert!(list.iter().all(|canal| (canal.diameter - gap).abs() < 0.05 * gap), "{list:?}");

@@ -6,9 +6,11 @@ use std::sync::atomic::AtomicBool;
 
 use crate::contour_support::{Case, enclosed, fault, noise};
 use glam::{DVec3, IVec3};
-use meshwright::contour::{Collapsed, Contour, ContourOptions, Crossing, Edge, Merge, collapse_same_voxel, contour};
+use meshwright::contour::{
+    Collapsed, Contour, ContourOptions, Crossing, Edge, Ground, Merge, collapse_same_voxel, contour,
+};
 use meshwright::lattice::Slot;
-use meshwright::mesh::TriMesh;
+use meshwright::mesh::{Plane, TriMesh};
 use meshwright::progress::{Progress, Stopped};
 use proptest::prelude::*;
 use rayon::prelude::*;
@@ -84,12 +86,12 @@ fn a_ball_with_an_inactive_core_has_the_volume_of_a_ball() {
     let (centre, radius) = (DVec3::new(31.3, 30.8, 31.1), 27.4);
     let inside = |v: IVec3| v.as_dvec3().distance(centre) < radius;
     let mut case = Case::new(IVec3::splat(64), 1, inside);
-    let bricks = case.distance.bricks.clone();
+    let bricks = case.distance.grid.bricks.clone();
     assert!(bricks.slot(IVec3::splat(3)) == Slot::Inside);
     for (n, &b) in bricks.active().iter().enumerate() {
         for k in 0..512 {
             let v = b * 8 + IVec3::new(k & 7, k >> 3 & 7, k >> 6);
-            case.distance.values[n][k as usize] = (v.as_dvec3().distance(centre) - radius) as f32;
+            case.distance.grid.values[n][k as usize] = (v.as_dvec3().distance(centre) - radius) as f32;
         }
     }
     case.interpolated = 1.0;
@@ -107,8 +109,8 @@ fn a_ball_with_an_inactive_core_has_the_volume_of_a_ball() {
 fn a_box_with_exact_crossings_is_exact_up_to_its_rounded_edges() {
     let inside = |v: IVec3| v.cmpge(IVec3::splat(5)).all() && v.cmplt(IVec3::new(20, 16, 33)).all();
     let case = Case::new(IVec3::splat(40), 3, inside);
-    let crossing = |_| Some(Crossing { t: 0.5, triangle: 0 });
-    let solid = contour(&case.lattice, &case.distance, &crossing, &ContourOptions::default(), &Progress::none());
+    let crossing = |_| Some(Crossing { t: 0.5, triangle: Some(0) });
+    let solid = contour(&case.distance, &crossing, &ContourOptions::default(), &Progress::none());
     let volume = enclosed(&solid.unwrap().mesh) / case.lattice.h.powi(3);
     let (exact, edges): (f64, f64) = (15.0 * 11.0 * 28.0, 4.0 * (15.0 + 11.0 + 28.0));
     // each edge loses a prism of half by half a voxel, halved
@@ -121,13 +123,14 @@ fn the_collapse_brings_the_edges_of_a_box_back() {
     let case = Case::new(IVec3::splat(40), 3, inside);
     // one triangle for each side: low x, low y, low z, high x, high y, high z
     let side = |edge: Edge| u32::from(edge.axis) + 3 * u32::from(inside(edge.voxel));
-    let crossing = |edge: Edge| Some(Crossing { t: 0.3, triangle: side(edge) });
+    let crossing = |edge: Edge| Some(Crossing { t: 0.3, triangle: Some(side(edge)) });
     let places = [4.3, 4.3, 4.3, 19.3, 15.3, 32.3];
-    let planes = |triangle: u32| {
-        let normal = DVec3::AXES[triangle as usize % 3] * if triangle < 3 { -1.0 } else { 1.0 };
-        Some((normal, normal.dot(case.lattice.to_model(DVec3::splat(places[triangle as usize])))))
+    let planes = |ground: Ground| {
+        let Ground::Triangle(side) = ground else { return None };
+        let normal = DVec3::AXES[side as usize % 3] * if side < 3 { -1.0 } else { 1.0 };
+        Some(Plane { normal, offset: normal.dot(case.lattice.to_model(DVec3::splat(places[side as usize]))) })
     };
-    let raw = contour(&case.lattice, &case.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap();
+    let raw = contour(&case.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap();
     let rounded = enclosed(&raw.mesh) / case.lattice.h.powi(3);
     let solid = collapse_same_voxel(raw, &case.lattice, &planes, Merge::All, &Progress::none()).unwrap();
     assert_eq!(fault(&solid.contour.mesh), None);
@@ -141,7 +144,7 @@ fn the_collapse_brings_the_edges_of_a_box_back() {
 fn a_cancelled_contour_stops() {
     let progress = Progress::none().with_flag(Arc::new(AtomicBool::new(true)));
     let case = Case::new(IVec3::splat(20), 2, |v| v.x > 9);
-    let stopped = contour(&case.lattice, &case.distance, &|_| None, &ContourOptions::default(), &progress);
+    let stopped = contour(&case.distance, &|_| None, &ContourOptions::default(), &progress);
     assert_eq!(stopped, Err(Stopped::Interrupted));
     let planes = |_| None;
     let stopped = collapse_same_voxel(case.contour(), &case.lattice, &planes, Merge::All, &progress);

@@ -5,7 +5,7 @@ use meshwright::fit::FitOptions;
 use meshwright::io::Colours;
 use meshwright::ldi::Expression;
 use meshwright::mesh::{TriMesh, ValidateOptions, validate};
-use meshwright::pipeline::{Options, Outcome, TriangleSource, VoxelSize, boolean, carry_colours, classes};
+use meshwright::pipeline::{Operand, Options, Outcome, TriangleSource, VoxelSize, boolean, repair};
 use meshwright::progress::Progress;
 use proptest::prelude::*;
 
@@ -42,9 +42,9 @@ fn at(resolution: u32) -> Options {
 fn made(operands: &[TriMesh], expression: &Expression, options: &Options) -> Outcome {
     let outcome = boolean(operands, expression, options, &Progress::none()).expect("a solid");
     let options = ValidateOptions { self_intersections: true, weld: true };
-    let validity = validate(&outcome.mesh, &options, &Progress::none()).expect("not stopped");
+    let validity = validate(&outcome.solid, &options, &Progress::none()).expect("not stopped");
     assert!(validity.is_valid(), "{:?}", validity.problems());
-    assert_eq!(outcome.sources.len(), outcome.mesh.triangles.len());
+    assert_eq!(outcome.sources.len(), outcome.solid.triangles.len());
     outcome
 }
 
@@ -70,9 +70,9 @@ fn a_cube_of_any_orientation_comes_back_as_the_cube() {
             let mut open = whole.clone();
             open.triangles.drain(..missing);
             let outcome = repaired(&open, &at(64));
-            let off = farthest_corner(&whole, &outcome.mesh);
+            let off = farthest_corner(&whole, &outcome.solid);
             assert!(off < 1e-5, "seed {seed}, {missing} triangles missing: a corner is {off} away");
-            with_more += usize::from(outcome.mesh.triangles.len() != 12);
+            with_more += usize::from(outcome.solid.triangles.len() != 12);
             assert_eq!(outcome.report.closed_triangles > 0, missing > 0, "seed {seed}");
         }
         assert!(with_more <= MOST_WITH_MORE, "{with_more} of 20 with {missing} missing have more than 12 triangles");
@@ -84,9 +84,9 @@ fn boxes_that_share_a_face_become_one_box() {
     let none = DMat3::IDENTITY;
     let (a, b) = (cuboid(DVec3::ZERO, DVec3::ONE, none), cuboid(DVec3::X, DVec3::new(2.0, 1.0, 1.0), none));
     let outcome = made(&[a, b], &Expression::union(2), &at(64));
-    assert_eq!(outcome.mesh.triangles.len(), 12);
+    assert_eq!(outcome.solid.triangles.len(), 12);
     let whole = cuboid(DVec3::ZERO, DVec3::new(2.0, 1.0, 1.0), none);
-    assert!(farthest_corner(&whole, &outcome.mesh) < 1e-6);
+    assert!(farthest_corner(&whole, &outcome.solid) < 1e-6);
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn every_triangle_of_the_result_knows_where_it_comes_from() {
     let lid_normal = normal(&TriMesh { triangles: lid, ..whole.clone() }, 0);
     let outcome = repaired(&open, &at(48));
     for (t, source) in outcome.sources.iter().enumerate() {
-        let own = normal(&outcome.mesh, t);
+        let own = normal(&outcome.solid, t);
         match *source {
             TriangleSource::Closed => assert!(own.dot(lid_normal) > 0.999),
             TriangleSource::Operand { operand, triangle } => {
@@ -118,13 +118,12 @@ fn sides_keep_their_colours() {
     let mesh = cuboid(DVec3::ZERO, DVec3::ONE, turn(5));
     let colour = |t: usize| [40 * (t / 2) as u8, 200, 10, 255];
     let colours = Colours::Faces((0..12).map(colour).collect());
-    let options = Options { classes: vec![classes(Some(&colours))], ..at(48) };
-    let outcome = repaired(&mesh, &options);
-    let carried = carry_colours(&outcome, &[(&mesh, Some(&colours))]);
-    let Some(Colours::Faces(carried)) = carried else { panic!("one colour for each triangle: {carried:?}") };
+    let operand = Operand { mesh: &mesh, colours: Some(&colours), texture: None };
+    let outcome = repair(operand, &at(48), &Progress::none()).expect("a solid");
+    let Some(Colours::Faces(carried)) = &outcome.colours else { panic!("no colour for each triangle") };
     for (t, found) in carried.iter().enumerate() {
         let facing = (0..12).max_by(|&a, &b| {
-            let agreement = |k: usize| normal(&mesh, k).dot(normal(&outcome.mesh, t));
+            let agreement = |k: usize| normal(&mesh, k).dot(normal(&outcome.solid, t));
             agreement(a).total_cmp(&agreement(b))
         });
         assert_eq!(*found, colour(facing.expect("twelve")), "triangle {t}");
@@ -135,10 +134,10 @@ fn sides_keep_their_colours() {
 fn without_a_fit_the_voxels_show_and_without_simplification_all_triangles_stay() {
     let mesh = cuboid(DVec3::ZERO, DVec3::ONE, turn(1));
     let raw = repaired(&mesh, &Options { fit: None, ..at(32) });
-    assert!(raw.report.fit.is_none() && farthest_corner(&mesh, &raw.mesh) > 1e-3);
+    assert!(raw.report.fit.is_none() && farthest_corner(&mesh, &raw.solid) > 1e-3);
     let all = FitOptions { keep: false, tolerance: 0.0, ..FitOptions::default() };
     let kept = repaired(&mesh, &Options { fit: Some(all), ..at(32) });
-    assert!(kept.mesh.triangles.len() > 2000 && farthest_corner(&mesh, &kept.mesh) < 1e-5);
+    assert!(kept.solid.triangles.len() > 2000 && farthest_corner(&mesh, &kept.solid) < 1e-5);
 }
 
 #[test]
@@ -146,10 +145,11 @@ fn a_repaired_mesh_repaired_again_stays() {
     let bar = cuboid(DVec3::new(0.0, 0.3, 0.3), DVec3::new(2.0, 0.6, 0.7), turn(9));
     let block = cuboid(DVec3::ZERO, DVec3::ONE, turn(2));
     let difference = Expression::Difference(Box::new(Expression::Operand(0)), Box::new(Expression::Operand(1)));
-    let once = made(&[block, bar], &difference, &at(64)).mesh;
+    let once = made(&[block, bar], &difference, &at(64)).solid;
     let differ = |again: &Outcome| {
         let options = meshwright::compare::CompareOptions { samples: 20_000, ..Default::default() };
-        let found = meshwright::compare::compare(&once, &again.mesh, &options, &Progress::none()).expect("not stopped");
+        let found =
+            meshwright::compare::compare(&once, &again.solid, &options, &Progress::none()).expect("not stopped");
         let found = found.symmetric.expect("both have triangles");
         (found.max / again.lattice.h, found.mean / again.lattice.h)
     };
@@ -177,6 +177,6 @@ proptest! {
             Expression::Union(vec![a_only, b_only])
         };
         let outcome = made(&[a, b], &expression, &at(40));
-        prop_assert!(!outcome.mesh.triangles.is_empty());
+        prop_assert!(!outcome.solid.triangles.is_empty());
     }
 }

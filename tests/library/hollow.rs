@@ -1,9 +1,12 @@
 //! Shelling out: the wall has its thickness, the surface stays as it is, drains lead into the cavity.
 
+use crate::common::repaired::hollowed;
 use crate::common::shapes;
 use glam::DVec3;
 use meshwright::mesh::{ClosestTree, TriMesh, ValidateOptions, Validity, validate};
-use meshwright::pipeline::{Drain, Error, HollowOptions, Options, TriangleSource, VoxelSize, hollow};
+use meshwright::pipeline::{
+    Drain, HollowError, HollowOptions, MorphologyError, SurfaceOptions, TriangleSource, VoxelSize,
+};
 use meshwright::progress::Progress;
 
 fn state(mesh: &TriMesh) -> Validity {
@@ -11,7 +14,7 @@ fn state(mesh: &TriMesh) -> Validity {
 }
 
 fn options(wall: f64, voxel: f64, drains: &[Drain]) -> HollowOptions {
-    HollowOptions { wall, drains: drains.to_vec(), solid: Options::new(VoxelSize::Length(voxel)) }
+    HollowOptions { wall, drains: drains.to_vec(), surface: SurfaceOptions::new(VoxelSize::Length(voxel)) }
 }
 
 fn block() -> TriMesh {
@@ -27,18 +30,18 @@ fn found_in(part: &TriMesh, whole: &TriMesh) -> usize {
 #[test]
 fn a_block_becomes_a_box_with_walls_of_that_thickness() {
     let mesh = block();
-    let made = hollow(&mesh, &options(1.0, 0.2, &[]), &Progress::none()).expect("hollow");
-    let after = state(&made.mesh);
+    let made = hollowed(&mesh, &options(1.0, 0.2, &[])).expect("hollow");
+    let after = state(&made.solid);
     assert!(after.is_valid() && after.bodies == 2, "{:?}", after.problems());
     assert!((after.volume - (480.0 - 8.0 * 6.0 * 4.0)).abs() < 0.02, "{}", after.volume);
-    assert_eq!(found_in(&mesh, &made.mesh), 12, "the outer surface is not as it was");
+    assert_eq!(found_in(&mesh, &made.solid), 12, "the outer surface is not as it was");
     let report = made.report.hollow.expect("a report");
     assert_eq!((report.cavities, report.left_out), (1, 0));
     assert!((report.volume_before - 480.0).abs() < 1e-9 && report.volume_after == after.volume);
     // Every point of the cavity is as far from the surface as the wall is thick.
     let tree = ClosestTree::of_mesh(&mesh);
     for (t, source) in made.sources.iter().enumerate().filter(|(_, source)| **source == TriangleSource::Closed) {
-        for p in made.mesh.corners(t) {
+        for p in made.solid.corners(t) {
             let wall = tree.nearest(p).expect("triangles").distance;
             assert!((wall - 1.0).abs() < 0.02, "a wall of {wall} at {p} ({source:?})");
         }
@@ -69,8 +72,8 @@ fn drains_lead_from_the_surface_into_the_cavity_and_leave_the_rest() {
         Drain { diameter: 1.5, at: DVec3::new(3.0, 4.0, -2.0) },
         Drain { diameter: 1.0, at: DVec3::new(10.5, 4.0, 3.0) },
     ];
-    let made = hollow(&mesh, &options(1.0, 0.125, &drains), &Progress::none()).expect("hollow");
-    let after = state(&made.mesh);
+    let made = hollowed(&mesh, &options(1.0, 0.125, &drains)).expect("hollow");
+    let after = state(&made.solid);
     // Two holes into one cavity: one surface with one tunnel.
     assert!(after.is_valid(), "{:?}", after.problems());
     assert_eq!((after.bodies, after.genus), (1, Some(1)));
@@ -85,13 +88,13 @@ fn drains_lead_from_the_surface_into_the_cavity_and_leave_the_rest() {
         );
     }
     // What no drain cuts, nor is beside what one cuts, is as it was.
-    let all: Vec<[DVec3; 3]> = (0..made.mesh.triangles.len()).map(|t| made.mesh.corners(t)).collect();
+    let all: Vec<[DVec3; 3]> = (0..made.solid.triangles.len()).map(|t| made.solid.corners(t)).collect();
     let near = |p: DVec3| drains.iter().any(|d| p.distance(d.at) < 0.5 * d.diameter + 3.0);
     let away = (0..mesh.triangles.len()).map(|t| mesh.corners(t)).filter(|corners| !corners.iter().any(|&p| near(p)));
     let (kept, lost): (Vec<_>, Vec<_>) = away.partition(|corners| all.contains(corners));
     assert!(lost.is_empty() && kept.len() > 2000, "{} triangles are as they were, {} are not", kept.len(), lost.len());
     // Nothing is left in the way of the holes.
-    let tree = ClosestTree::of_mesh(&made.mesh);
+    let tree = ClosestTree::of_mesh(&made.solid);
     for depth in [-0.1, 0.5, 1.0, 1.2] {
         for p in [DVec3::new(3.0, 4.0, depth), DVec3::new(10.0 - depth, 4.0, 3.0)] {
             assert!(tree.nearest(p).expect("triangles").distance > 0.4, "something is in the way at {p}");
@@ -104,16 +107,16 @@ fn a_void_that_is_there_already_gets_a_wall_too() {
     let mut mesh = shapes::cuboid(DVec3::ZERO, DVec3::splat(12.0));
     let void = shapes::cuboid(DVec3::splat(5.0), DVec3::splat(7.0));
     mesh.append(&TriMesh { triangles: void.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..void });
-    let made = hollow(&mesh, &options(1.0, 0.2, &[]), &Progress::none()).expect("hollow");
-    let after = state(&made.mesh);
+    let made = hollowed(&mesh, &options(1.0, 0.2, &[])).expect("hollow");
+    let after = state(&made.solid);
     assert!(after.is_valid() && after.bodies == 4, "{} surfaces, {:?}", after.bodies, after.problems());
-    assert_eq!(found_in(&mesh, &made.mesh), 24);
+    assert_eq!(found_in(&mesh, &made.solid), 24);
 }
 
 #[test]
 fn what_cannot_be_hollow_is_refused_with_words() {
     let mesh = block();
-    let words = |options: &HollowOptions| hollow(&mesh, options, &Progress::none()).expect_err("refused").to_string();
+    let words = |options: &HollowOptions| hollowed(&mesh, options).expect_err("refused").to_string();
     let refused = words(&options(4.0, 0.5, &[]));
     assert!(refused.contains("nothing would be hollow"), "{refused}");
     let refused = words(&options(0.3, 0.2, &[]));
@@ -122,7 +125,10 @@ fn what_cannot_be_hollow_is_refused_with_words() {
     let refused = words(&options(1.0, 0.2, &[narrow]));
     assert!(refused.contains("drains of 0.3 need a voxel"), "{refused}");
     for wall in [0.0, -1.0, f64::NAN] {
-        assert!(matches!(hollow(&mesh, &options(wall, 0.2, &[]), &Progress::none()), Err(Error::VoxelSize { .. })));
+        assert!(matches!(
+            hollowed(&mesh, &options(wall, 0.2, &[])),
+            Err(HollowError::Erosion(MorphologyError::Radius { .. }))
+        ));
     }
 }
 
@@ -132,6 +138,8 @@ fn a_drain_that_meets_no_cavity_is_refused_with_its_place() {
     let mut mesh = shapes::cuboid(DVec3::ZERO, DVec3::splat(10.0));
     mesh.append(&shapes::cuboid(DVec3::new(10.0 - 1e-3, 4.0, 4.0), DVec3::new(20.0, 6.0, 6.0)));
     let drain = Drain { diameter: 1.2, at: DVec3::new(16.0, 5.0, 7.0) };
-    let refused = hollow(&mesh, &options(1.0, 0.25, &[drain]), &Progress::none()).expect_err("no cavity is there");
-    assert!(matches!(&refused, Error::Drain { reason } if reason.contains("drain 1 at 16 5 7")), "{refused}");
+    let refused = hollowed(&mesh, &options(1.0, 0.25, &[drain])).expect_err("no cavity is there");
+    assert!(
+        matches!(refused, HollowError::Drain { number: 1, .. }) && refused.to_string().contains("drain 1 at 16 5 7")
+    );
 }

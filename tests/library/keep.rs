@@ -21,7 +21,7 @@ fn at(resolution: u32) -> Options {
 fn made(operands: &[TriMesh], expression: &Expression, options: &Options) -> Outcome {
     let outcome = boolean(operands, expression, options, &Progress::none()).expect("a solid");
     let options = ValidateOptions { self_intersections: true, weld: true };
-    let validity = validate(&outcome.mesh, &options, &Progress::none()).expect("not stopped");
+    let validity = validate(&outcome.solid, &options, &Progress::none()).expect("not stopped");
     assert!(validity.is_valid(), "{:?}", validity.problems());
     outcome
 }
@@ -57,7 +57,7 @@ fn a_solid_comes_back_triangle_by_triangle() {
         let (name, mesh) = closed(which);
         let outcome = repaired(&mesh, &at(48));
         assert_eq!(kept(&outcome), mesh.triangles.len(), "{name}");
-        assert_eq!(triangles(&outcome.mesh), triangles(&mesh), "{name}");
+        assert_eq!(triangles(&outcome.solid), triangles(&mesh), "{name}");
         assert!(outcome.report.kept_all());
     }
 }
@@ -68,7 +68,7 @@ fn walls_thinner_than_a_voxel_stay() {
     let mut plate = wall.clone();
     plate.append(&tilted(cuboid(DVec3::new(0.2, 0.2, 0.5), DVec3::new(0.5, 0.5, 0.9))));
     let outcome = repaired(&plate, &at(32));
-    assert_eq!(triangles(&outcome.mesh), triangles(&plate));
+    assert_eq!(triangles(&outcome.solid), triangles(&plate));
     assert!(outcome.report.warnings.is_empty(), "{:?}", outcome.report.warnings);
 }
 
@@ -78,7 +78,7 @@ fn turned_patches_are_turned_back_and_kept() {
     let mut broken = whole.clone();
     broken.triangles[100..500].iter_mut().for_each(|t| t.swap(0, 1));
     let outcome = repaired(&broken, &at(48));
-    assert_eq!(triangles(&outcome.mesh), triangles(&whole));
+    assert_eq!(triangles(&outcome.solid), triangles(&whole));
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn around_a_hole_all_but_the_nearest_triangles_stay() {
     let gone = |t: usize| mesh.corners(t).iter().any(|p| p.distance(hole) < 0.2);
     open.triangles = (0..mesh.triangles.len()).filter(|&t| !gone(t)).map(|t| mesh.triangles[t]).collect();
     let outcome = repaired(&open, &at(64));
-    let (found, h) = (triangles(&outcome.mesh), outcome.lattice.h);
+    let (found, h) = (triangles(&outcome.solid), outcome.lattice.h);
     let away = |t: usize| mesh.corners(t).iter().all(|p| p.distance(hole) > 0.2 + 6.0 * h);
     let far = TriMesh {
         triangles: (0..mesh.triangles.len()).filter(|&t| away(t)).map(|t| mesh.triangles[t]).collect(),
@@ -108,7 +108,7 @@ fn a_boolean_keeps_what_it_does_not_cut() {
     let cutter = cuboid(box_low, box_low + size);
     let difference = Expression::Difference(Box::new(Expression::Operand(0)), Box::new(Expression::Operand(1)));
     let outcome = made(&[ring.clone(), cutter.clone()], &difference, &at(64));
-    let (found, h) = (triangles(&outcome.mesh), outcome.lattice.h);
+    let (found, h) = (triangles(&outcome.solid), outcome.lattice.h);
     let (inside, outside) = (box_low - 4.0 * h, box_low + 4.0 * h);
     let left = (0..ring.triangles.len()).filter(|&t| ring.corners(t).iter().all(|p| p.cmplt(inside).any()));
     let left = TriMesh { triangles: left.map(|t| ring.triangles[t]).collect(), ..ring.clone() };
@@ -125,14 +125,14 @@ fn parts_inside_of_others_and_a_void_are_told_apart() {
     let (outer, inner) = (cuboid(DVec3::ZERO, DVec3::ONE), cuboid(DVec3::splat(0.3), DVec3::splat(0.6)));
     let mut both = outer.clone();
     both.append(&inner);
-    assert_eq!(triangles(&repaired(&both, &at(32)).mesh), triangles(&outer));
+    assert_eq!(triangles(&repaired(&both, &at(32)).solid), triangles(&outer));
     let mut hollow = outer.clone();
     let mut inwards = inner.clone();
     inwards.triangles.iter_mut().for_each(|t| t.swap(0, 1));
     hollow.append(&inwards);
-    assert_eq!(triangles(&repaired(&hollow, &at(32)).mesh), triangles(&hollow));
+    assert_eq!(triangles(&repaired(&hollow, &at(32)).solid), triangles(&hollow));
     let difference = Expression::Difference(Box::new(Expression::Operand(0)), Box::new(Expression::Operand(1)));
-    assert_eq!(triangles(&made(&[outer, inner], &difference, &at(32)).mesh), triangles(&hollow));
+    assert_eq!(triangles(&made(&[outer, inner], &difference, &at(32)).solid), triangles(&hollow));
 }
 
 #[test]
@@ -142,7 +142,7 @@ fn every_kept_triangle_knows_its_source() {
     for (t, source) in outcome.sources.iter().enumerate() {
         let TriangleSource::Operand { triangle, .. } = *source else { panic!("triangle {t} closes nothing") };
         let one = |mesh: &TriMesh, t: usize| triangles(&TriMesh { triangles: vec![mesh.triangles[t]], ..mesh.clone() });
-        assert_eq!(one(&mesh, triangle as usize), one(&outcome.mesh, t), "triangle {t}");
+        assert_eq!(one(&mesh, triangle as usize), one(&outcome.solid, t), "triangle {t}");
     }
 }
 
@@ -168,11 +168,11 @@ proptest! {
         let outcome = repaired(&broken, &at(resolution));
         let tree = ClosestTree::of_mesh(&broken);
         let off = |t: usize| {
-            let corners = outcome.mesh.corners(t);
+            let corners = outcome.solid.corners(t);
             corners.iter().map(|p| tree.nearest(*p).map_or(0.0, |c| c.distance)).fold(0.0, f64::max)
         };
         let of_source = |t: &usize| matches!(outcome.sources[*t], TriangleSource::Operand { .. });
-        let farthest = (0..outcome.mesh.triangles.len()).filter(of_source).map(off).fold(0.0, f64::max);
+        let farthest = (0..outcome.solid.triangles.len()).filter(of_source).map(off).fold(0.0, f64::max);
         prop_assert!(farthest < 2.0 * outcome.lattice.h, "{} h", farthest / outcome.lattice.h);
     }
 }

@@ -1,5 +1,6 @@
 //! Dilate, erode, close and open, against the bodies they must give and the laws they must obey.
 
+use crate::common::repaired::{morphed, without_canals};
 use crate::common::shapes::{cuboid, torus};
 use glam::{DMat3, DVec3};
 use meshwright::ldi::Expression;
@@ -7,8 +8,8 @@ use meshwright::mesh::{TriMesh, ValidateOptions, Validity, validate};
 use meshwright::morphology::CanalKind;
 use meshwright::morphology::Operation::{self, Close, Dilate, Erode, Open};
 use meshwright::pipeline::{
-    CanalOptions, CanalReport, Error, MorphologyOptions, Options, Outcome, Remove, VoxelSize, boolean, canals,
-    morphology,
+    CanalError, CanalOptions, CanalReport, MorphologyError, MorphologyOptions, Options, Outcome, Remove,
+    SurfaceOptions, VoxelSize, boolean,
 };
 use meshwright::progress::Progress;
 use meshwright::sdf::exact::{ExactDistance, PointSign};
@@ -18,18 +19,18 @@ use proptest::test_runner::RngSeed;
 const RESOLUTION: u32 = 48;
 
 fn options(operation: Operation, radius: f64) -> MorphologyOptions {
-    MorphologyOptions { operation, radius, mitre: None, solid: Options::new(VoxelSize::Along(RESOLUTION)) }
+    MorphologyOptions { operation, radius, sharp: None, surface: SurfaceOptions::new(VoxelSize::Along(RESOLUTION)) }
 }
 
 fn checked(outcome: Outcome) -> (Outcome, Validity) {
     let options = ValidateOptions { self_intersections: true, weld: true };
-    let validity = validate(&outcome.mesh, &options, &Progress::none()).expect("not stopped");
+    let validity = validate(&outcome.solid, &options, &Progress::none()).expect("not stopped");
     assert!(validity.is_valid(), "{:?}", validity.problems());
     (outcome, validity)
 }
 
 fn made(mesh: &TriMesh, options: &MorphologyOptions) -> (Outcome, Validity) {
-    checked(morphology(mesh, options, &Progress::none()).expect("a solid"))
+    checked(morphed(mesh, options).expect("a solid"))
 }
 
 fn tilted(mesh: TriMesh) -> TriMesh {
@@ -82,9 +83,9 @@ fn round_offsets_lie_at_their_distance_and_grow_with_it() {
         let mut before = 0.0;
         for radius in [-0.15f64, -0.08, 0.08, 0.2] {
             let operation = if radius > 0.0 { Dilate } else { Erode };
-            let solid = Options::new(VoxelSize::Along(96));
-            let (outcome, validity) = made(&mesh, &MorphologyOptions { solid, ..options(operation, radius.abs()) });
-            let [low, high] = range(&outcome.mesh, &mesh);
+            let surface = SurfaceOptions::new(VoxelSize::Along(96));
+            let (outcome, validity) = made(&mesh, &MorphologyOptions { surface, ..options(operation, radius.abs()) });
+            let [low, high] = range(&outcome.solid, &mesh);
             let h = outcome.lattice.h;
             assert!(
                 (low - radius).abs() < within * h && (high - radius).abs() < within * h,
@@ -100,15 +101,15 @@ fn round_offsets_lie_at_their_distance_and_grow_with_it() {
 fn a_box_eroded_or_dilated_sharply_is_a_box() {
     let (low, high) = (DVec3::ZERO, DVec3::new(1.0, 0.8, 0.6));
     let solid = tilted(cuboid(low, high));
-    for (operation, mitre, by) in [(Erode, None, -0.1), (Erode, Some(2.0), -0.1), (Dilate, Some(2.0), 0.13)] {
-        let outcome = made(&solid, &MorphologyOptions { mitre, ..options(operation, f64::abs(by)) }).0;
+    for (operation, sharp, by) in [(Erode, None, -0.1), (Erode, Some(2.0), -0.1), (Dilate, Some(2.0), 0.13)] {
+        let outcome = made(&solid, &MorphologyOptions { sharp, ..options(operation, f64::abs(by)) }).0;
         let wanted = tilted(cuboid(low - by, high + by));
-        assert_eq!(outcome.mesh.triangles.len(), 12, "{operation:?}");
-        assert!(apart(&outcome.mesh, &wanted) < 1e-5, "{operation:?}");
+        assert_eq!(outcome.solid.triangles.len(), 12, "{operation:?}");
+        assert!(apart(&outcome.solid, &wanted) < 1e-5, "{operation:?}");
     }
     // √3 is how far the corner of a cube goes; at 1.2 it is cut off there.
-    let cut = made(&solid, &MorphologyOptions { mitre: Some(1.2), ..options(Dilate, 0.13) }).0;
-    let [low, high] = range(&cut.mesh, &solid);
+    let cut = made(&solid, &MorphologyOptions { sharp: Some(1.2), ..options(Dilate, 0.13) }).0;
+    let [low, high] = range(&cut.solid, &solid);
     assert!(low > 0.129 && high < 1.2 * 0.13 + 0.1 * cut.lattice.h, "{low} to {high}, voxel {}", cut.lattice.h);
 }
 
@@ -122,7 +123,7 @@ fn closing_fills_the_inner_edge_and_nothing_else() {
     assert!((validity.volume - before - fillet).abs() < 0.1 * fillet, "{} for {fillet}", validity.volume - before);
     // The two ends of the inner edge go.
     let away = |corner: &DVec3| {
-        outcome.mesh.positions.iter().map(|p| p.distance(*corner) / outcome.lattice.h).fold(f64::INFINITY, f64::min)
+        outcome.solid.positions.iter().map(|p| p.distance(*corner) / outcome.lattice.h).fold(f64::INFINITY, f64::min)
     };
     let mut away: Vec<f64> = mesh.positions.iter().map(away).collect();
     away.sort_by(f64::total_cmp);
@@ -134,14 +135,16 @@ fn closing_fills_the_inner_edge_and_nothing_else() {
 #[test]
 fn erosion_that_leaves_nothing_says_so() {
     for operation in [Erode, Open] {
-        let gone = morphology(&torus(48, 24), &options(operation, 0.4), &Progress::none());
+        let gone = morphed(&torus(48, 24), &options(operation, 0.4));
         match gone {
-            Err(Error::NothingEnclosed { reason }) => assert!(reason.contains("nowhere thicker than 0.8"), "{reason}"),
-            other => panic!("{:?}", other.map(|outcome| outcome.mesh.triangles.len())),
+            Err(error @ MorphologyError::NothingLeft { .. }) => {
+                assert!(error.to_string().contains("nowhere thicker than 0.8"), "{error}");
+            }
+            other => panic!("{:?}", other.map(|outcome| outcome.solid.triangles.len())),
         }
     }
-    let bad = morphology(&torus(48, 24), &options(Close, 0.0), &Progress::none());
-    assert!(matches!(bad, Err(Error::VoxelSize { .. })));
+    let bad = morphed(&torus(48, 24), &options(Close, 0.0));
+    assert!(matches!(bad, Err(MorphologyError::Radius { .. })));
 }
 
 /// A ball of radius 1, its sides a sixty-fourth of its girth.
@@ -191,7 +194,7 @@ fn without(block: TriMesh, others: Vec<TriMesh>) -> TriMesh {
     operands.extend(others);
     let expression = Expression::difference(operands.len());
     let plain = Options::new(VoxelSize::Along(128));
-    boolean(&operands, &expression, &plain, &Progress::none()).expect("a block with canals").mesh
+    boolean(&operands, &expression, &plain, &Progress::none()).expect("a block with canals").solid.into_mesh()
 }
 
 #[test]
@@ -201,26 +204,26 @@ fn canals_under_the_diameter_are_filled_and_others_stay() {
     let canals = (0..3).map(|k| cylinder(centre(k), diameters[k], 1.2, 32)).collect();
     let mesh = without(cuboid(DVec3::ZERO, DVec3::new(2.2, 1.0, 0.8)), canals);
     let (outcome, validity) =
-        made(&mesh, &MorphologyOptions { solid: Options::new(VoxelSize::Along(96)), ..options(Close, 0.1) });
+        made(&mesh, &MorphologyOptions { surface: SurfaceOptions::new(VoxelSize::Along(96)), ..options(Close, 0.1) });
     assert_eq!(validity.genus, Some(1));
     let h = outcome.lattice.h;
     let away = |p: &&DVec3| (p.x - centre(2).x).abs() < 0.4 || p.x < 0.1 || p.x > 2.0;
     let untouched =
-        TriMesh { positions: outcome.mesh.positions.iter().filter(away).copied().collect(), triangles: vec![] };
+        TriMesh { positions: outcome.solid.positions.iter().filter(away).copied().collect(), triangles: vec![] };
     let [low, high] = range(&untouched, &mesh);
     assert!(low > -0.05 * h && high < 0.05 * h, "{low} {high}");
     for x in [0.0, 2.2] {
         for (y, z) in [(0.0, 0.0), (1.0, 0.0), (0.0, 0.8), (1.0, 0.8)] {
             let corner = DVec3::new(x, y, z);
-            assert!(outcome.mesh.positions.iter().any(|p| p.distance(corner) < 1e-6), "{corner}");
+            assert!(outcome.solid.positions.iter().any(|p| p.distance(corner) < 1e-6), "{corner}");
         }
     }
 }
 
 fn listed(mesh: &TriMesh, max_diameter: f64, remove: Remove) -> (Outcome, Validity, CanalReport) {
-    let options = CanalOptions { max_diameter, remove, solid: Options::new(VoxelSize::Along(96)) };
-    let (outcome, validity) = checked(canals(mesh, &options, &Progress::none()).expect("a solid").outcome);
-    let report = outcome.report.canals.clone().expect("canals were looked for");
+    let options = CanalOptions { max_diameter, remove, surface: SurfaceOptions::new(VoxelSize::Along(96)) };
+    let (outcome, report) = without_canals(mesh, &options).expect("a solid");
+    let (outcome, validity) = checked(outcome);
     (outcome, validity, report)
 }
 
@@ -251,14 +254,17 @@ fn canals_are_listed_by_width_and_filled_one_by_one() {
         near.sort_unstable();
         near
     };
-    assert_eq!((near(&outcome.mesh, 0), near(&outcome.mesh, 2)), (near(&whole.mesh, 0), near(&whole.mesh, 2)));
-    assert_ne!(near(&outcome.mesh, 1), near(&whole.mesh, 1));
+    assert_eq!((near(&outcome.solid, 0), near(&outcome.solid, 2)), (near(&whole.solid, 0), near(&whole.solid, 2)));
+    assert_ne!(near(&outcome.solid, 1), near(&whole.solid, 1));
     let all = listed(&mesh, 0.2, Remove::All);
     assert_eq!((all.1.genus, all.2.removed), (Some(1), vec![1, 2]));
-    let missing =
-        CanalOptions { max_diameter: 0.2, remove: Remove::These(vec![3]), solid: Options::new(VoxelSize::Along(96)) };
-    let missing = canals(&mesh, &missing, &Progress::none());
-    assert!(matches!(missing, Err(Error::MissingCanal { number: 3, count: 2 })));
+    let missing = CanalOptions {
+        max_diameter: 0.2,
+        remove: Remove::These(vec![3]),
+        surface: SurfaceOptions::new(VoxelSize::Along(96)),
+    };
+    let missing = without_canals(&mesh, &missing);
+    assert!(matches!(missing, Err(CanalError::Missing { number: 3, count: 2 })));
 }
 
 #[test]
@@ -302,10 +308,10 @@ fn opening_takes_fins_away_and_leaves_thick_ones() {
     let fin = |x: f64, width: f64| cuboid(DVec3::new(x, 0.2, 0.4), DVec3::new(x + width, 0.8, 0.9));
     let parts = [cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.5)), fin(0.3, 0.03), fin(0.6, 0.16)];
     let plain = Options::new(VoxelSize::Along(64));
-    let mesh = boolean(&parts, &Expression::union(3), &plain, &Progress::none()).expect("fins").mesh;
-    let (outcome, _) = made(&mesh, &MorphologyOptions { solid: plain, ..options(Open, 0.05) });
+    let mesh = boolean(&parts, &Expression::union(3), &plain, &Progress::none()).expect("fins").solid.into_mesh();
+    let (outcome, _) = made(&mesh, &MorphologyOptions { surface: plain.surface(), ..options(Open, 0.05) });
     let top = |x: f64| {
-        let near = outcome.mesh.positions.iter().filter(|p| (p.x - x).abs() < 0.1);
+        let near = outcome.solid.positions.iter().filter(|p| (p.x - x).abs() < 0.1);
         near.map(|p| p.z).fold(f64::NEG_INFINITY, f64::max)
     };
     assert!(top(0.315) < 0.52, "{}", top(0.315));
@@ -320,11 +326,11 @@ fn closing_is_opening_of_the_complement() {
     let closed = made(&mesh, &options(Close, 0.15)).0;
     around.append(&TriMesh { triangles: mesh.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect(), ..mesh.clone() });
     let voxel = VoxelSize::Length(closed.lattice.h);
-    let opened = made(&around, &MorphologyOptions { solid: Options::new(voxel), ..options(Open, 0.15) }).0;
+    let opened = made(&around, &MorphologyOptions { surface: SurfaceOptions::new(voxel), ..options(Open, 0.15) }).0;
     let inner = |p: &&DVec3| p.cmpgt(bounds.min - 0.3).all() && p.cmplt(bounds.max + 0.3).all();
-    let void = TriMesh { positions: opened.mesh.positions.iter().filter(inner).copied().collect(), triangles: vec![] };
+    let void = TriMesh { positions: opened.solid.positions.iter().filter(inner).copied().collect(), triangles: vec![] };
     assert!(void.positions.len() > 8);
-    let [low, high] = range(&void, &closed.mesh);
+    let [low, high] = range(&void, &closed.solid);
     assert!(low > -0.5 * voxel_of(&closed) && high < 0.5 * voxel_of(&closed), "{low} {high}");
 }
 
@@ -348,19 +354,19 @@ proptest! {
         other.positions.iter_mut().for_each(|p| *p = turn * *p + DVec3::from_array(shift));
         let parts = [cuboid(DVec3::splat(-0.4), DVec3::splat(0.4)), other];
         let plain = Options::new(VoxelSize::Along(RESOLUTION));
-        let mesh = boolean(&parts, &Expression::union(2), &plain, &Progress::none()).expect("a solid").mesh;
+        let mesh = boolean(&parts, &Expression::union(2), &plain, &Progress::none()).expect("a solid").solid.into_mesh();
         let operation = if close { Close } else { Open };
         let once = made(&mesh, &options(operation, radius)).0;
         let h = once.lattice.h;
         let sign = if close { -1.0 } else { 1.0 };
-        let beyond: Vec<f64> = distances(&once.mesh, &mesh).iter().map(|d| sign * d / h).collect();
+        let beyond: Vec<f64> = distances(&once.solid, &mesh).iter().map(|d| sign * d / h).collect();
         let far = beyond.iter().filter(|&&d| d > 0.35).count();
         let most = beyond.iter().copied().fold(0.0, f64::max);
         // What fills less than 0.31 h counts as unchanged, and an edge that the fit had to give up stays rounded.
         prop_assert!(50 * far <= beyond.len() && most < 1.5, "{far} of {} points beyond, by up to {most} h", beyond.len());
-        let voxel = Options::new(VoxelSize::Length(h));
-        let twice = made(&once.mesh, &MorphologyOptions { solid: voxel, ..options(operation, radius) }).0;
-        let [there, back] = [(&once.mesh, &twice.mesh), (&twice.mesh, &once.mesh)].map(|(a, b)| distances(a, b));
+        let voxel = SurfaceOptions::new(VoxelSize::Length(h));
+        let twice = made(&once.solid, &MorphologyOptions { surface: voxel, ..options(operation, radius) }).0;
+        let [there, back] = [(&once.solid, &twice.solid), (&twice.solid, &once.solid)].map(|(a, b)| distances(a, b));
         let count = (there.len() + back.len()) as f64;
         let mean = there.iter().chain(&back).map(|d| d.abs() / h).sum::<f64>() / count;
         let most = there.iter().chain(&back).fold(0.0f64, |most, d| most.max(d.abs() / h));
@@ -375,7 +381,7 @@ proptest! {
         let mut mesh = cuboid(DVec3::ZERO, DVec3::from_array(size));
         mesh.positions.iter_mut().for_each(|p| *p = turn * *p);
         let outcome = made(&mesh, &options(Close, 0.1)).0;
-        prop_assert!(apart(&outcome.mesh, &mesh) < 1e-5);
-        prop_assert_eq!(outcome.mesh.triangles.len(), 12);
+        prop_assert!(apart(&outcome.solid, &mesh) < 1e-5);
+        prop_assert_eq!(outcome.solid.triangles.len(), 12);
     }
 }

@@ -5,21 +5,21 @@ use std::sync::atomic::AtomicBool;
 
 use crate::common::{shapes, stages};
 use glam::{DVec3, IVec3};
-use meshwright::lattice::{BRICK, Grid, Lattice};
+use meshwright::lattice::{BRICK, DistanceField, Grid, Lattice, voxel_in_brick};
 use meshwright::ldi::Spans;
 use meshwright::mesh::{Plane, TriMesh};
 use meshwright::progress::Progress;
 use meshwright::sdf::{RobustOptions, Trust, correct, estimate, march, robust, smooth};
-use meshwright::vote::{VoteRule, Votes, vote_near_surface, voxel_in_brick};
+use meshwright::vote::{VoteRule, Votes, vote_near_surface};
 
-fn field(spans: &[Spans], planes: &[Plane], votes: &Grid<Votes>, options: &RobustOptions) -> Grid<f32> {
+fn field(spans: &[Spans], planes: &[Plane], votes: (&Grid<Votes>, &Lattice), options: &RobustOptions) -> DistanceField {
     robust(spans, planes, votes, options, &Progress::none()).expect("not stopped")
 }
 
-fn robust_of(mesh: &TriMesh, lattice: &Lattice, options: &RobustOptions) -> Grid<f32> {
+fn robust_of(mesh: &TriMesh, lattice: &Lattice, options: &RobustOptions) -> DistanceField {
     let spans = stages::spans_of(mesh, lattice);
     let votes = stages::votes_of(mesh, lattice, VoteRule::default());
-    field(&spans, &stages::planes_of(mesh, lattice), &votes, options)
+    field(&spans, &stages::planes_of(mesh, lattice), (&votes, lattice), options)
 }
 
 /// Voxels with a neighbour of the other sign, with their values.
@@ -42,7 +42,7 @@ fn to_torus(p: DVec3) -> f64 {
 fn a_finely_meshed_torus_has_the_torus_distance() {
     let mesh = shapes::torus(512, 256);
     let lattice = stages::lattice_of(&mesh, 96);
-    let grid = robust_of(&mesh, &lattice, &RobustOptions::default());
+    let grid = robust_of(&mesh, &lattice, &RobustOptions::default()).grid;
     let near = transition(&grid);
     assert!(near.len() > 10_000);
     let errors = near.iter().map(|&(v, d)| (d as f64 - to_torus(lattice.to_model(v.as_dvec3())) / lattice.h).abs());
@@ -56,7 +56,7 @@ fn marching_reaches_the_band_with_small_error_and_keeps_signs() {
     let lattice = stages::lattice_of(&mesh, 96);
     let near = robust_of(&mesh, &lattice, &RobustOptions::default());
     let band = 8.0;
-    let grid = march(&near, &lattice, band, &Progress::none()).expect("not stopped");
+    let grid = march(&near, band, &Progress::none()).expect("not stopped").grid;
     let (mut reached, mut sum, mut max) = (0usize, 0.0, 0.0f64);
     for (v, d) in voxels(&grid) {
         let inside = v.min_element() >= 0 && (lattice.dims - v).min_element() > 0;
@@ -79,7 +79,7 @@ fn correction_does_not_change_signs_and_walls_of_one_voxel_survive() {
     let lattice = stages::lattice_of(&mesh, 64);
     let spans = stages::spans_of(&mesh, &lattice);
     let votes = stages::votes_of(&mesh, &lattice, VoteRule::default());
-    let grid = field(&spans, &stages::planes_of(&mesh, &lattice), &votes, &RobustOptions::default());
+    let grid = field(&spans, &stages::planes_of(&mesh, &lattice), (&votes, &lattice), &RobustOptions::default()).grid;
     let inside = voxels(&grid).filter(|(_, d)| *d < 0.0).count();
     assert!(inside >= 64 * 64 - 200, "{inside}");
     for (v, d) in voxels(&grid) {
@@ -87,7 +87,7 @@ fn correction_does_not_change_signs_and_walls_of_one_voxel_survive() {
     }
     // The paper's smoothing wears the wall away: that is why votes are trusted.
     let paper = RobustOptions { trust: Trust::Nothing, ..RobustOptions::default() };
-    let worn = field(&spans, &stages::planes_of(&mesh, &lattice), &votes, &paper);
+    let worn = field(&spans, &stages::planes_of(&mesh, &lattice), (&votes, &lattice), &paper).grid;
     assert!(voxels(&worn).filter(|(_, d)| *d < 0.0).count() < inside);
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 use meshwright::fit::FitOptions;
 use meshwright::ldi::Expression;
 use meshwright::mesh::{Shape, TriMesh, ValidateOptions, Validity, validate};
-use meshwright::pipeline::{Error, Options, Outcome, VoxelSize, boolean};
+use meshwright::pipeline::{BooleanError, Options, Outcome, VoxelSize, boolean};
 use meshwright::progress::Progress;
 use rayon::prelude::*;
 
@@ -17,7 +17,7 @@ fn judged(mesh: &TriMesh) -> Validity {
 
 fn made(operands: &[TriMesh], expression: &Expression, options: &Options) -> (Outcome, Validity) {
     let outcome = boolean(operands, expression, options, &Progress::none()).expect("a solid");
-    let validity = judged(&outcome.mesh);
+    let validity = judged(&outcome.solid);
     assert!(validity.is_valid(), "{:?}", validity.problems());
     (outcome, validity)
 }
@@ -64,7 +64,7 @@ fn a_corner_stays_where_planes_go_on_beyond_the_surface() {
         for (x, y, z) in [8.0, 12.0].into_iter().flat_map(|x| [8.0, 12.0].map(|y| (x, y, 2.0))) {
             // Where sheets touch they stay 0.02 h apart.
             let within = 0.05 * outcome.lattice.h;
-            assert!(has(&outcome.mesh, DVec3::new(x, y, z), within), "{resolution}: {x} {y} {z}");
+            assert!(has(&outcome.solid, DVec3::new(x, y, z), within), "{resolution}: {x} {y} {z}");
         }
     }
 }
@@ -102,10 +102,10 @@ fn a_larger_tolerance_gives_no_more_triangles() {
         for tolerance in [0.002, 0.02, 0.2] {
             let (simple, _) = made(&meshes, &without(0, 6), &rebuilt(80, tolerance));
             let h = simple.lattice.h;
-            let off = farthest(&whole.mesh, &simple.mesh).max(farthest(&simple.mesh, &whole.mesh)) / h;
+            let off = farthest(&whole.solid, &simple.solid).max(farthest(&simple.solid, &whole.solid)) / h;
             // Places that are given up are a voxel rounder, in the one or in the other.
             assert!(off <= tolerance + 1.5, "seed {seed}: {off} h for {tolerance}");
-            let triangles = simple.mesh.triangles.len();
+            let triangles = simple.solid.triangles.len();
             assert!(
                 triangles as f64 <= 1.02 * fewest as f64 + 4.0,
                 "seed {seed}, {tolerance}: {triangles} after {fewest}"
@@ -119,12 +119,12 @@ fn a_larger_tolerance_gives_no_more_triangles() {
 fn a_round_surface_is_simplified_within_the_tolerance_both_ways() {
     let torus = crate::common::shapes::torus(160, 80);
     let whole = made(std::slice::from_ref(&torus), &Expression::Operand(0), &rebuilt(40, 0.0)).0;
-    let mut last = whole.mesh.triangles.len();
+    let mut last = whole.solid.triangles.len();
     for tolerance in [0.05, 0.3, 1.0] {
         let simple = made(std::slice::from_ref(&torus), &Expression::Operand(0), &rebuilt(40, tolerance)).0;
-        let off = farthest(&whole.mesh, &simple.mesh).max(farthest(&simple.mesh, &whole.mesh)) / simple.lattice.h;
+        let off = farthest(&whole.solid, &simple.solid).max(farthest(&simple.solid, &whole.solid)) / simple.lattice.h;
         assert!(off <= 1.05 * tolerance, "{off} h for {tolerance}");
-        let triangles = simple.mesh.triangles.len();
+        let triangles = simple.solid.triangles.len();
         assert!(triangles < last, "{triangles} after {last} for {tolerance}");
         last = triangles;
     }
@@ -143,7 +143,7 @@ fn boxes_side_by_side_become_few_triangles_at_any_resolution() {
         for resolution in [60, 96] {
             let (outcome, _) =
                 made(std::slice::from_ref(&soup), &Expression::Operand(0), &Options::new(VoxelSize::Along(resolution)));
-            let triangles = outcome.mesh.triangles.len();
+            let triangles = outcome.solid.triangles.len();
             assert!(triangles < 200 * 12, "seed {seed} at {resolution}: {triangles}");
         }
     }
@@ -176,11 +176,11 @@ fn small_soups_are_valid_in_welded_positions_with_and_without_a_fit() {
             let mesh = soup(seed);
             let resolution = 5 + (seed % 12) as u32 + if seed.is_multiple_of(40) { 16 } else { 0 };
             let plain = Options::new(VoxelSize::Along(resolution));
-            let bare = Options { fit: None, ..plain.clone() };
+            let bare = Options { fit: None, ..plain };
             let both = [plain, bare].map(|options| {
                 match boolean(std::slice::from_ref(&mesh), &Expression::Operand(0), &options, &Progress::none()) {
                     Ok(outcome) => {
-                        let validity = judged(&outcome.mesh);
+                        let validity = judged(&outcome.solid);
                         assert!(
                             validity.is_valid(),
                             "seed {seed} at {resolution}, fit {}: {:?}",
@@ -189,7 +189,7 @@ fn small_soups_are_valid_in_welded_positions_with_and_without_a_fit() {
                         );
                         1
                     }
-                    Err(Error::NothingEnclosed { .. } | Error::Empty { .. }) => 0,
+                    Err(BooleanError::Nothing(_) | BooleanError::Empty { .. }) => 0,
                     Err(other) => panic!("seed {seed}: {other}"),
                 }
             });
@@ -225,7 +225,7 @@ fn octahedra_that_touch_in_corners_come_back_exactly() {
         assert_eq!(validity.bodies, 4, "{resolution}");
         assert!(
             mesh.positions.iter().all(|&p| outcome
-                .mesh
+                .solid
                 .positions
                 .iter()
                 .any(|q| q.distance(p) < 0.05 * outcome.lattice.h))

@@ -5,7 +5,9 @@ use glam::DVec3;
 use meshwright::ldi::Expression;
 use meshwright::mesh::{TriMesh, ValidateOptions, Validity, validate};
 use meshwright::orient::OrientMode;
-use meshwright::pipeline::{Error, Options, Outcome, TriangleSource, VoxelSize, boolean, plan, repair};
+use meshwright::pipeline::{
+    BooleanError, LimitError, Options, Outcome, TriangleSource, VoxelSize, boolean, plan, repair,
+};
 use meshwright::progress::Progress;
 use proptest::prelude::*;
 
@@ -15,7 +17,7 @@ fn options(resolution: u32) -> Options {
 
 fn checked(outcome: Outcome) -> (Outcome, Validity) {
     let all = ValidateOptions { self_intersections: true, weld: false };
-    let validity = validate(&outcome.mesh, &all, &Progress::none()).expect("not stopped");
+    let validity = validate(&outcome.solid, &all, &Progress::none()).expect("not stopped");
     assert!(validity.is_valid(), "{:?}", validity.problems());
     (outcome, validity)
 }
@@ -54,7 +56,7 @@ fn inside_out_files_come_out_right() {
     assert_eq!(validity.genus, Some(1));
     let keep = Options { orient: OrientMode::Keep, ..options(48) };
     let kept = repair(&turned_over(torus(64, 32)), &keep, &Progress::none());
-    assert!(matches!(kept, Err(Error::NothingEnclosed { .. })));
+    assert!(matches!(kept, Err(BooleanError::Nothing(_))));
 }
 
 #[test]
@@ -119,11 +121,11 @@ fn facing_boxes_fuse_and_a_minus_a_is_empty() {
         [([a.clone(), a.clone()], Expression::difference(2)), ([a.clone(), b], Expression::intersection(2))]
     {
         let empty = boolean(&operands, &expression, &options(64), &Progress::none());
-        assert!(matches!(empty, Err(Error::NothingEnclosed { .. })));
+        assert!(matches!(empty, Err(BooleanError::Nothing(_))));
     }
     let (twice, _) = combined(&[a.clone(), a.clone()], &Expression::union(2), 64);
-    assert_eq!(twice.mesh.triangles.len(), 12);
-    close(validate_volume(&twice.mesh), 1.0, 1e-9);
+    assert_eq!(twice.solid.triangles.len(), 12);
+    close(validate_volume(&twice.solid), 1.0, 1e-9);
 }
 
 #[test]
@@ -141,7 +143,7 @@ fn an_open_sheet_encloses_nothing_and_says_so() {
         triangles: vec![[0, 1, 2], [1, 3, 2]],
     };
     match repair(&sheet, &options(32), &Progress::none()) {
-        Err(Error::NothingEnclosed { reason }) => assert!(reason.contains("open sheet"), "{reason}"),
+        Err(error @ BooleanError::Nothing(_)) => assert!(error.to_string().contains("open sheet"), "{error}"),
         other => panic!("{other:?}"),
     }
 }
@@ -150,17 +152,17 @@ fn an_open_sheet_encloses_nothing_and_says_so() {
 fn limits_are_refused_with_what_would_work() {
     let mut far = unit_box(DVec3::ZERO);
     far.positions.iter_mut().for_each(|p| *p += 1e7);
-    assert_eq!(repair(&far, &options(64), &Progress::none()).expect("a solid").mesh, far);
+    assert_eq!(repair(&far, &options(64), &Progress::none()).expect("a solid").solid, far);
     far.triangles.pop();
     far.positions.iter_mut().for_each(|p| *p *= 1e29);
-    assert!(matches!(repair(&far, &options(64), &Progress::none()), Err(Error::VoxelSize { .. })));
+    assert!(matches!(repair(&far, &options(64), &Progress::none()), Err(BooleanError::Lattice(_))));
     // What is right needs no memory; what is open does.
     let mut solid = unit_box(DVec3::ZERO);
     assert!(repair(&solid, &Options { max_memory: Some(20_000_000), ..options(2000) }, &Progress::none()).is_ok());
     solid.triangles.pop();
     let small = Options { max_memory: Some(20_000_000), ..options(2000) };
     match repair(&solid, &small, &Progress::none()) {
-        Err(Error::Memory { voxel_that_fits: Some(h), needed, .. }) => {
+        Err(BooleanError::Limit(LimitError::Memory { voxel_that_fits: Some(h), needed, .. })) => {
             assert!(needed > 20_000_000);
             let fitting = Options { voxel: VoxelSize::Length(h), ..small };
             assert!(repair(&solid, &fitting, &Progress::none()).is_ok());
@@ -169,7 +171,7 @@ fn limits_are_refused_with_what_would_work() {
     }
     assert!(plan(std::slice::from_ref(&solid), &options(2000)).expect("a plan").memory > 20_000_000);
     let missing = boolean(&[solid], &Expression::union(2), &options(32), &Progress::none());
-    assert!(matches!(missing, Err(Error::MissingOperand { operand: 1, given: 1 })));
+    assert!(matches!(missing, Err(BooleanError::MissingOperand { operand: 1, given: 1 })));
 }
 
 #[test]
@@ -178,7 +180,7 @@ fn the_bytes_do_not_depend_on_the_threads() {
     broken.triangles.drain(100..160);
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| repair(&broken, &options(64), &Progress::none()).expect("a solid").mesh)
+        pool.install(|| repair(&broken, &options(64), &Progress::none()).expect("a solid").solid)
     };
     assert_eq!(run(1), run(2));
     assert_eq!(run(1), run(7));
@@ -231,7 +233,7 @@ proptest! {
                     TriangleSource::Closed => [None; 3],
                 };
                 let sources: Vec<_> = outcome.sources.iter().map(name).collect();
-                (outcome.mesh, sources)
+                (outcome.solid, sources)
             })
         };
         let union = make(&[&a, &b, &c], &Expression::union(3));
@@ -253,7 +255,7 @@ fn reports_and_errors_name_operands_in_the_order_given() {
     }
     let flat = TriMesh { positions: vec![DVec3::splat(-9.0); 3], triangles: vec![[0, 1, 2]] };
     let failed = boolean(&[low, flat], &Expression::union(2), &options(24), &Progress::none());
-    assert!(matches!(failed, Err(Error::Empty { operand: 1 })), "{failed:?}");
+    assert!(matches!(failed, Err(BooleanError::Empty { operand: 1 })), "{failed:?}");
 }
 
 /// Formats number vertices in their own way: as the file has them, by first use, or one for each corner.
@@ -275,7 +277,7 @@ fn the_numbers_of_vertices_do_not_matter() {
     let (plain, _) = repaired(&mesh, 24);
     for other in [mesh.welded(), apart, backwards] {
         let (found, _) = repaired(&other, 24);
-        assert_eq!(corners(&found.mesh), corners(&plain.mesh));
+        assert_eq!(corners(&found.solid), corners(&plain.solid));
         assert_eq!(found.sources, plain.sources);
     }
 }

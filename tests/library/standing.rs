@@ -20,7 +20,7 @@ fn judged(mesh: &TriMesh) -> Validity {
 
 fn repaired(mesh: &TriMesh, options: &Options) -> Outcome {
     let outcome = repair(mesh, options, &Progress::none()).expect("a solid");
-    let validity = judged(&outcome.mesh);
+    let validity = judged(&outcome.solid);
     assert!(validity.is_valid(), "{:?}", validity.problems());
     outcome
 }
@@ -119,7 +119,7 @@ fn hollow(wall: f64) -> TriMesh {
 fn check_unchanged(mesh: &TriMesh, resolution: u32) -> Result<(), TestCaseError> {
     prop_assume!(judged(mesh).is_valid());
     let outcome = repair(mesh, &at(resolution), &Progress::none()).expect("a solid");
-    prop_assert_eq!(&outcome.mesh, mesh);
+    prop_assert_eq!(&outcome.solid, mesh);
     prop_assert!(!outcome.report.lattice && outcome.report.kept_all());
     let own = |t: usize| TriangleSource::Operand { operand: 0, triangle: t as u32 };
     prop_assert!(outcome.sources.iter().enumerate().all(|(t, source)| *source == own(t)));
@@ -128,7 +128,7 @@ fn check_unchanged(mesh: &TriMesh, resolution: u32) -> Result<(), TestCaseError>
     prop_assert!(!topology.is_large());
     // Inside out it comes back the right way round, with the same corners in the same order but for the turn.
     let turned = repair(&inside_out(mesh.clone()), &at(resolution), &Progress::none()).expect("a solid");
-    prop_assert_eq!(&turned.mesh, mesh);
+    prop_assert_eq!(&turned.solid, mesh);
     Ok(())
 }
 
@@ -185,9 +185,9 @@ proptest! {
         };
         match boolean(&[a, b], &expression, &at(resolution), &Progress::none()) {
             Ok(outcome) => {
-                prop_assert!(judged(&outcome.mesh).is_valid());
+                prop_assert!(judged(&outcome.solid).is_valid());
                 prop_assert!(!outcome.report.lattice);
-                let found = judged(&outcome.mesh).volume;
+                let found = judged(&outcome.solid).volume;
                 prop_assert!((found - volume).abs() < 1e-12 * volume, "{} and {}", found, volume);
             }
             Err(error) => prop_assert_eq!(volume, 0.0, "{}", error),
@@ -204,12 +204,12 @@ fn a_broken_link_changes_nothing_of_the_others_and_keeps_its_own_triangles() {
         let mut broken = whole.clone();
         broken.triangles.remove(missing);
         let outcome = repaired(&broken, &at(96));
-        assert_eq!(judged(&outcome.mesh).bodies, 4);
+        assert_eq!(judged(&outcome.solid).bodies, 4);
         assert_eq!(outcome.report.standing.shells, 3);
         let given: std::collections::HashSet<_> =
             (0..whole.triangles.len()).map(|t| whole.corners(t).map(|p| p.to_array().map(f64::to_bits))).collect();
-        let same = (0..outcome.mesh.triangles.len())
-            .filter(|&t| given.contains(&outcome.mesh.corners(t).map(|p| p.to_array().map(f64::to_bits))))
+        let same = (0..outcome.solid.triangles.len())
+            .filter(|&t| given.contains(&outcome.solid.corners(t).map(|p| p.to_array().map(f64::to_bits))))
             .count();
         // Those around the hole may be cut where the new ones end on them.
         assert!(same >= whole.triangles.len() - 40, "{same} of {}", whole.triangles.len());
@@ -222,13 +222,13 @@ fn a_broken_link_changes_nothing_of_the_others_and_keeps_its_own_triangles() {
 fn a_void_in_an_inside_out_body_and_a_body_in_a_void_take_turns() {
     let nested = [1.0, 0.8, 0.5].map(|radius| ball(DVec3::ZERO, radius, 8));
     let right = joined([nested[0].clone(), inside_out(nested[1].clone()), nested[2].clone()]);
-    assert_eq!(repaired(&right, &at(16)).mesh, right);
-    assert_eq!(repaired(&inside_out(right.clone()), &at(16)).mesh, right);
+    assert_eq!(repaired(&right, &at(16)).solid, right);
+    assert_eq!(repaired(&inside_out(right.clone()), &at(16)).solid, right);
     // Bodies within bodies, all facing outwards, are one: the inner ones are left out.
     let all_out = joined(nested.clone());
     let outcome = repaired(&all_out, &at(16));
     let corners = |mesh: &TriMesh| (0..mesh.triangles.len()).map(|t| mesh.corners(t)).collect::<Vec<_>>();
-    assert_eq!(corners(&outcome.mesh), corners(&nested[0]));
+    assert_eq!(corners(&outcome.solid), corners(&nested[0]));
     assert_eq!(outcome.report.standing.left_out, 2);
 }
 
@@ -239,22 +239,22 @@ fn shells_that_touch_in_a_corner_or_an_edge_do_not_stand() {
         let both = joined([one.clone(), moved(one.clone(), by)]);
         let outcome = repaired(&both, &at(32));
         assert_eq!(outcome.report.standing.shells, 0);
-        assert!((judged(&outcome.mesh).volume - 2.0).abs() < 0.02);
+        assert!((judged(&outcome.solid).volume - 2.0).abs() < 0.02);
     }
 }
 
 #[test]
 fn doubles_stay_doubles_and_singles_are_what_stl_holds() {
     let mesh = moved(ball(DVec3::ZERO, 1.0 / 3.0, 9), DVec3::splat(0.1));
-    assert_eq!(repaired(&mesh, &at(16)).mesh, mesh);
+    assert_eq!(repaired(&mesh, &at(16)).solid, mesh);
     let single = repaired(&mesh, &Options { precision: Precision::Single, ..at(16) });
-    assert!(single.mesh.positions.iter().zip(&mesh.positions).all(|(a, b)| *a == b.as_vec3().as_dvec3()));
+    assert!(single.solid.positions.iter().zip(&mesh.positions).all(|(a, b)| *a == b.as_vec3().as_dvec3()));
     // What is kept beside a hole has its doubles, too.
     let mut open = mesh.clone();
     open.triangles.pop();
     let closed = repaired(&open, &at(48));
     let own: std::collections::HashSet<_> = mesh.positions.iter().map(|p| p.to_array().map(f64::to_bits)).collect();
-    let kept = closed.mesh.positions.iter().filter(|p| own.contains(&p.to_array().map(f64::to_bits))).count();
+    let kept = closed.solid.positions.iter().filter(|p| own.contains(&p.to_array().map(f64::to_bits))).count();
     assert!(kept >= mesh.positions.len() - 4, "{kept} of {}", mesh.positions.len());
 }
 
@@ -275,13 +275,13 @@ fn far_from_the_origin_all_is_as_near_it() {
         };
         let (near, at_far) = (made(DVec3::ZERO), made(far));
         for (near, far_one) in [(near.0, at_far.0), (near.1, at_far.1)] {
-            let (a, b) = (judged(&near.mesh), judged(&far_one.mesh));
+            let (a, b) = (judged(&near.solid), judged(&far_one.solid));
             assert!(b.is_valid(), "{:?}", b.problems());
             assert!((a.volume - b.volume).abs() < 1e-6, "{} and {}", a.volume, b.volume);
             assert_eq!(a.bodies, b.bodies);
         }
         let ball = moved(ball(DVec3::ZERO, 0.5, 8), far);
-        assert_eq!(repaired(&ball, &at(64)).mesh, ball);
+        assert_eq!(repaired(&ball, &at(64)).solid, ball);
     }
 }
 
@@ -308,10 +308,10 @@ fn simplification_by_hand_means_what_stands_as_well() {
     let mut mesh = cubes(&[true; 27], 3);
     mesh.positions.iter_mut().for_each(|p| *p /= 3.0);
     let usual = repaired(&mesh, &at(32));
-    assert_eq!(usual.mesh, mesh);
+    assert_eq!(usual.solid, mesh);
     let fit = Some(FitOptions { kept_tolerance: 0.002, ..FitOptions::default() });
     let simple = repaired(&mesh, &Options { fit, ..at(32) });
-    assert_eq!((simple.mesh.triangles.len(), judged(&simple.mesh).volume), (12, 1.0));
+    assert_eq!((simple.solid.triangles.len(), judged(&simple.solid).volume), (12, 1.0));
     assert!(!simple.report.lattice);
 }
 
@@ -323,7 +323,7 @@ fn a_body_that_crosses_itself_beside_others_leaves_them_as_they_are() {
     let balls = [ball(DVec3::new(-0.5 - 0.2 * h, 0.5, 0.5), 0.5, 10), ball(DVec3::new(3.0, 0.5, 0.5), 0.5, 10)];
     let mesh = joined(crossing.into_iter().chain(balls.clone()));
     let outcome = repaired(&mesh, &at(64));
-    let validity = judged(&outcome.mesh);
+    let validity = judged(&outcome.solid);
     let boxes = 1.0 + 0.9f64.powi(3) - 0.4f64.powi(3);
     let volume = boxes + balls.iter().map(|ball| judged(ball).volume).sum::<f64>();
     assert_eq!((validity.bodies, outcome.report.standing.shells), (3, 2));
@@ -336,7 +336,7 @@ fn bodies_smaller_than_a_voxel_far_apart_come_back_the_right_way_round() {
     let small = |at: f64| ball(DVec3::X * at, 0.004, 6);
     let mesh = joined([small(0.0), small(10.0)]);
     for resolution in [16, 64, 256] {
-        assert_eq!(repaired(&inside_out(mesh.clone()), &at(resolution)).mesh, mesh);
+        assert_eq!(repaired(&inside_out(mesh.clone()), &at(resolution)).solid, mesh);
     }
 }
 
@@ -346,7 +346,7 @@ fn many_bodies_are_as_quick_as_their_triangles() {
     let place = |n: usize| DVec3::new((n % 100) as f64, (n / 100) as f64, (n % 7) as f64 * 0.1);
     let mesh = joined((0..10_000).map(|n| cuboid(place(n), place(n) + 0.5)));
     let start = std::time::Instant::now();
-    assert_eq!(repaired(&mesh, &at(64)).mesh, mesh);
+    assert_eq!(repaired(&mesh, &at(64)).solid, mesh);
     assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
 }
 
@@ -354,6 +354,6 @@ fn many_bodies_are_as_quick_as_their_triangles() {
 fn two_coincident_skins_are_one_and_told() {
     let skins = joined([ball(DVec3::ZERO, 1.0, 12), ball(DVec3::ZERO, 1.0 - 1e-6, 12)]);
     let outcome = repaired(&skins, &at(64));
-    assert_eq!(outcome.mesh.triangles.len(), skins.triangles.len() / 2);
+    assert_eq!(outcome.solid.triangles.len(), skins.triangles.len() / 2);
     assert_eq!((outcome.report.standing.shells, outcome.report.standing.left_out), (1, 1));
 }

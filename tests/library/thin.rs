@@ -1,12 +1,13 @@
 //! Thin walls: measured, and made as thick as is wanted.
 
+use crate::common::repaired::thickened;
 use crate::common::shapes::cuboid;
 use glam::{DMat3, DVec3};
 use meshwright::ldi::Expression;
 use meshwright::mesh::{TriMesh, ValidateOptions, Validity, validate};
 use meshwright::pipeline::{
-    Error, Options, Outcome, SheetSide, ThickenOptions, ThicknessReport, TriangleSource, VoxelSize, boolean, thicken,
-    thickness,
+    Options, Outcome, SheetSide, SurfaceOptions, ThickenError, ThickenOptions, ThicknessReport, TriangleSource,
+    VoxelSize, boolean, thickness,
 };
 use meshwright::progress::Progress;
 
@@ -25,7 +26,7 @@ fn plates(widths: [f64; 3]) -> TriMesh {
         plate(0.8, widths[2]),
     ];
     let plain = Options::new(VoxelSize::Along(128));
-    boolean(&parts, &Expression::union(4), &plain, &Progress::none()).expect("a solid").mesh
+    boolean(&parts, &Expression::union(4), &plain, &Progress::none()).expect("a solid").solid.into_mesh()
 }
 
 /// A square sheet, `n` by `n` squares, normals along +z.
@@ -43,10 +44,10 @@ fn measured(mesh: &TriMesh, voxel: VoxelSize) -> ThicknessReport {
 }
 
 fn grown(mesh: &TriMesh, least: f64, side: SheetSide) -> (Outcome, Validity) {
-    let options = ThickenOptions { least, side, solid: Options::new(VoxelSize::Along(96)) };
-    let outcome = thicken(mesh, &options, &Progress::none()).expect("a solid");
+    let options = ThickenOptions { min: least, side, surface: SurfaceOptions::new(VoxelSize::Along(96)) };
+    let outcome = thickened(mesh, &options).expect("a solid");
     let judge = ValidateOptions { self_intersections: true, weld: true };
-    let validity = validate(&outcome.mesh, &judge, &Progress::none()).expect("not stopped");
+    let validity = validate(&outcome.solid, &judge, &Progress::none()).expect("not stopped");
     assert!(validity.is_valid(), "{:?}", validity.problems());
     (outcome, validity)
 }
@@ -77,7 +78,7 @@ fn thin_plates_grow_to_the_thickness_and_thick_ones_stay() {
     let mesh = turned(plates([0.02, 0.06, 0.2]));
     let (outcome, validity) = grown(&mesh, 0.1, SheetSide::Both);
     let h = outcome.lattice.h;
-    let found = measured(&outcome.mesh, VoxelSize::Length(h));
+    let found = measured(&outcome.solid, VoxelSize::Length(h));
     // Of the rays, 1 % meet what became round, near its rim.
     assert!(found.walls.percentiles[1] > 0.1 - 0.1 * h, "{found:?}");
     let report = outcome.report.thicken.expect("it was done");
@@ -86,12 +87,15 @@ fn thin_plates_grow_to_the_thickness_and_thick_ones_stay() {
     assert!(kept > 10, "{kept}");
     // The corners of the block and of the thick plate are where they were.
     let corners = turned(plates([0.2, 0.2, 0.2])).positions;
-    let held = |p: &&DVec3| outcome.mesh.positions.iter().any(|q| q.distance(**p) < 1e-6);
+    let held = |p: &&DVec3| outcome.solid.positions.iter().any(|q| q.distance(**p) < 1e-6);
     assert!(corners.iter().filter(held).count() >= 12, "{}", corners.iter().filter(held).count());
     // A second time there is little left to do.
-    let again =
-        ThickenOptions { least: 0.1 - 0.5 * h, side: SheetSide::Both, solid: Options::new(VoxelSize::Length(h)) };
-    let again = thicken(&outcome.mesh, &again, &Progress::none()).expect("a solid");
+    let again = ThickenOptions {
+        min: 0.1 - 0.5 * h,
+        side: SheetSide::Both,
+        surface: SurfaceOptions::new(VoxelSize::Length(h)),
+    };
+    let again = thickened(&outcome.solid, &again).expect("a solid");
     let left = again.report.thicken.expect("it was done").thin_area;
     assert!(left < 0.01 * report.thin_area, "{left} of {}", report.thin_area);
 }
@@ -130,16 +134,17 @@ fn a_sheet_beside_a_solid_grows_and_the_solid_stays() {
     let report = outcome.report.thicken.expect("it was done");
     assert!((report.sheet_area - 1.0).abs() < 1e-9 && report.thin_area == 0.0, "{report:?}");
     assert_eq!(validity.bodies, 2);
-    assert!(outcome.mesh.positions.iter().any(|p| p.distance(DVec3::ONE) < 1e-6));
+    assert!(outcome.solid.positions.iter().any(|p| p.distance(DVec3::ONE) < 1e-6));
 }
 
 #[test]
 fn a_thickness_that_the_lattice_cannot_hold_is_refused_with_the_voxel_that_can() {
     for (least, says) in [(0.02, "a voxel of at most 0.005"), (0.0, "above zero"), (f64::NAN, "above zero")] {
-        let options = ThickenOptions { least, side: SheetSide::Both, solid: Options::new(VoxelSize::Along(96)) };
-        match thicken(&sheet(2), &options, &Progress::none()) {
-            Err(Error::VoxelSize { reason }) => assert!(reason.contains(says), "{reason}"),
-            other => panic!("{:?}", other.map(|outcome| outcome.mesh.triangles.len())),
+        let options =
+            ThickenOptions { min: least, side: SheetSide::Both, surface: SurfaceOptions::new(VoxelSize::Along(96)) };
+        match thickened(&sheet(2), &options) {
+            Err(error) => assert!(error.to_string().contains(says), "{error}"),
+            Ok(outcome) => panic!("{} triangles", outcome.solid.triangles.len()),
         }
     }
 }
@@ -148,26 +153,29 @@ fn a_thickness_that_the_lattice_cannot_hold_is_refused_with_the_voxel_that_can()
 fn walls_far_below_the_wanted_thickness_are_seen_and_grow_to_it() {
     let plate = cuboid(DVec3::ZERO, DVec3::new(10.0, 10.0, 0.4));
     for least in [0.7, 2.0, 6.0, 7.0, 8.0, 12.0] {
-        let options = ThickenOptions { least, side: SheetSide::Both, solid: Options::new(VoxelSize::Along(64)) };
-        let outcome = thicken(&plate, &options, &Progress::none()).expect("a solid");
+        let options =
+            ThickenOptions { min: least, side: SheetSide::Both, surface: SurfaceOptions::new(VoxelSize::Along(64)) };
+        let outcome = thickened(&plate, &options).expect("a solid");
         let report = outcome.report.thicken.expect("it was done");
         assert!(report.thin_area > 180.0, "{least}: {report:?}");
-        let bounds = outcome.mesh.bounds().expect("triangles");
+        let bounds = outcome.solid.bounds().expect("triangles");
         assert!((bounds.size().z - least).abs() < 0.1 * outcome.lattice.h, "{least}: {bounds:?}");
     }
     // The wall of a round body is thin all around.
     let torus = crate::common::shapes::torus_of(64, 32, 10.0, 0.3);
-    let options = ThickenOptions { least: 8.0, side: SheetSide::Both, solid: Options::new(VoxelSize::Along(64)) };
-    let report = thicken(&torus, &options, &Progress::none()).expect("a solid").report.thicken.expect("it was done");
+    let options =
+        ThickenOptions { min: 8.0, side: SheetSide::Both, surface: SurfaceOptions::new(VoxelSize::Along(64)) };
+    let report = thickened(&torus, &options).expect("a solid").report.thicken.expect("it was done");
     let area = 4.0 * std::f64::consts::PI.powi(2) * 10.0 * 0.3;
     assert!(report.thin_area > 0.95 * area && report.volume_after > 20.0 * report.volume_before, "{report:?}");
 }
 
 #[test]
 fn a_thickness_far_beyond_the_model_is_refused() {
-    let options = ThickenOptions { least: 1000.0, side: SheetSide::Both, solid: Options::new(VoxelSize::Along(64)) };
-    match thicken(&crate::common::shapes::torus(64, 32), &options, &Progress::none()) {
-        Err(Error::VoxelSize { reason }) => assert!(reason.contains("as thick as the model is long"), "{reason}"),
-        other => panic!("{:?}", other.map(|outcome| outcome.mesh.triangles.len())),
+    let options =
+        ThickenOptions { min: 1000.0, side: SheetSide::Both, surface: SurfaceOptions::new(VoxelSize::Along(64)) };
+    match thickened(&crate::common::shapes::torus(64, 32), &options) {
+        Err(ThickenError::WallsForModel { min: 1000.0, .. }) => {}
+        other => panic!("{:?}", other.map(|outcome| outcome.solid.triangles.len())),
     }
 }

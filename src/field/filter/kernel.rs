@@ -79,7 +79,7 @@ pub(in crate::field) fn uniform(random: &mut impl Rng) -> f64 {
 /// Where a field is sampled around a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sampling {
-    /// So many displacements drawn once from the kernel, all with the same weight: the sum (10).
+    /// At so many displacements drawn once from the kernel, all with the same weight: the sum (10).
     Drawn {
         /// How many, at least 1.
         count: usize,
@@ -89,7 +89,7 @@ pub enum Sampling {
         /// error; docs/algorithms.md has what it does to others.
         mirrored: bool,
     },
-    /// So many along each axis of the cube around the kernel, weighted by it: the sum (9).
+    /// At so many places along each axis of the cube around the kernel, weighted by it: the sum (9).
     Regular {
         /// How many, at least 2.
         side: usize,

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::kernel::{Displacement, Kernel, Sampling, displacements, near_each_other};
 use super::smoothstep;
-use crate::field::{Ball, Extent, Facet, Field, Range, Sample, Shared};
+use crate::field::{Ball, Extent, Field, Range, Sample, Shared, SourceTriangle};
 
 /// Options of [`smooth`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,17 +92,17 @@ impl Field for Smoothed {
         self.field.range(&Ball { radius: ball.radius + reach, ..*ball })
     }
 
-    fn steepness(&self) -> f64 {
-        let growth = 1.5 / self.options.depth * self.volume.steepness() * self.options.radius;
-        self.field.steepness() * (1.0 + growth)
+    fn lipschitz(&self) -> f64 {
+        let growth = 1.5 / self.options.depth * self.volume.lipschitz() * self.options.radius;
+        self.field.lipschitz() * (1.0 + growth)
     }
 
     fn extent(&self) -> Extent {
         self.field.extent().grown(self.options.radius)
     }
 
-    fn facet(&self, p: DVec3, within: f64) -> Option<Facet> {
+    fn source_triangle(&self, p: DVec3, within: f64) -> Option<SourceTriangle> {
         // Inside the volume a surface of planes that stays where it was, stays.
-        self.field.facet(p, within).filter(|_| self.value(p).abs() <= within)
+        self.field.source_triangle(p, within).filter(|_| self.value(p).abs() <= within)
     }
 }

@@ -16,7 +16,7 @@ use kernel::{Displacement, displacements, near_each_other};
 pub use kernel::{Kernel, Sampling};
 pub use local::{SmoothOptions, smooth};
 
-use super::{Ball, Extent, Facet, Field, Range, Sample, Shared};
+use super::{Ball, Extent, Field, Range, Sample, Shared, SourceTriangle};
 
 /// The bump's width over the cap must not be more (7).
 pub const WIDEST: f64 = 8.0 / 9.0;
@@ -331,7 +331,7 @@ impl Field for Filtered {
         let most = reached.abs().max;
         let reached = if self.sign_safe { Range { min: -most, max: most } } else { reached };
         // On one side of the surface no sample is on the other, where the field is nowhere steeper than a distance.
-        let held = self.sign_safe || self.inner.steepness() <= 1.0;
+        let held = self.sign_safe || self.inner.lipschitz() <= 1.0;
         let side = if !held {
             Range::ALL
         } else if own.min > 0.0 {
@@ -342,12 +342,12 @@ impl Field for Filtered {
             Range::ALL
         };
         // The mean of the values is as far from the value as the mean displacement at most.
-        let off = self.inner.steepness() * size * self.around.mean;
+        let off = self.inner.lipschitz() * size * self.around.mean;
         reached.and(side).and(own.plus(Range::around(0.0, off)))
     }
 
-    fn steepness(&self) -> f64 {
-        let steep = self.inner.steepness();
+    fn lipschitz(&self) -> f64 {
+        let steep = self.inner.lipschitz();
         steep * (1.0 + self.around.mean * steep * 1.5 / self.cap)
     }
 
@@ -355,7 +355,7 @@ impl Field for Filtered {
         self.inner.extent()
     }
 
-    fn facet(&self, p: DVec3, within: f64) -> Option<Facet> {
-        self.inner.facet(p, within)
+    fn source_triangle(&self, p: DVec3, within: f64) -> Option<SourceTriangle> {
+        self.inner.source_triangle(p, within)
     }
 }

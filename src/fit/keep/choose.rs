@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::super::facets::Facets;
+use super::super::facets::{FacetId, Facets, Side};
 use super::super::surface::{rounded, shape};
 use crate::ldi::Evidence;
 use crate::mesh::edges::{Edges, Union, copies};
@@ -38,6 +38,11 @@ impl Kept {
     pub(super) fn corners(&self, facet: u32) -> [u32; 3] {
         let [a, b, c] = self.mesh.triangles[facet as usize];
         if self.reversed[facet as usize] { [a, c, b] } else { [a, b, c] }
+    }
+
+    /// The side of a triangle that looks out of the solid.
+    pub(super) fn side(&self, triangle: u32) -> Side {
+        Side::new(FacetId::of_triangle(triangle), self.reversed[triangle as usize])
     }
 
     /// The kept triangles.

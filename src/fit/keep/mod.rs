@@ -42,17 +42,17 @@ const PATIENCE: (usize, usize) = (6, 36);
 /// union of fandisk with itself, turned, 97.5 % of the edges come out without, 99 % with.
 const CLEARANCE: f64 = 1.5;
 
-/// The surface with source triangles in place of the contour wherever that can be, and the number of them. `home`
+/// The surface with source triangles in place of the contour wherever that can be, and the number of them. `initial`
 /// must be valid; `evidence` is what the rays say of the facets.
 pub(super) fn keep(
-    home: &Surface,
+    initial: &Surface,
     facets: &Facets<'_>,
     evidence: &Evidence,
     h: f64,
     progress: &Progress,
 ) -> Result<(Surface, usize), Stopped> {
     let mut kept = choose::chosen(facets, evidence, h, progress)?;
-    near(&kept, &meeting_places(home, &kept), CLEARANCE * h).into_iter().for_each(|t| kept.is[t as usize] = false);
+    near(&kept, &meeting_places(initial, &kept), CLEARANCE * h).into_iter().for_each(|t| kept.is[t as usize] = false);
     let mut trouble = Trouble::default();
     for _ in 0..MOST_ROUNDS {
         progress.check()?;
@@ -61,7 +61,7 @@ pub(super) fn keep(
             break;
         }
         let border = Border::new(&kept);
-        let misfit = match joined(home, facets, &kept, &border, h) {
+        let misfit = match joined(initial, facets, &kept, &border, h) {
             Ok(joined) => match mended(joined, facets, h, progress)? {
                 Ok(surface) => return Ok((surface, kept.facets().len())),
                 Err(points) => Misfit { points, ..Misfit::default() },
@@ -76,24 +76,24 @@ pub(super) fn keep(
             kept.is[t] &= gone.binary_search(&border.component[t]).is_err();
         }
     }
-    Ok((home.clone(), 0))
+    Ok((initial.clone(), 0))
 }
 
 /// Where the contour goes over from one to another of triangles that meet.
-fn meeting_places(home: &Surface, kept: &Kept) -> Vec<DVec3> {
+fn meeting_places(initial: &Surface, kept: &Kept) -> Vec<DVec3> {
     let meets = |v: u32| {
-        let facets = home.sides[v as usize].iter().map(|s| s.facet() as usize);
+        let facets = initial.sides[v as usize].iter().map(|s| s.facet().index());
         facets.filter(|&t| kept.meets.get(t) == Some(&true)).collect::<Vec<_>>()
     };
     let apart = |a: usize, b: usize| {
         let (a, b) = (kept.mesh.triangles[a], kept.mesh.triangles[b]);
         a.iter().all(|v| !b.contains(v))
     };
-    let crossing = home.edges().filter(|&[a, b]| {
+    let crossing = initial.edges().filter(|&[a, b]| {
         let (a, b) = (meets(a), meets(b));
         !a.is_empty() && a.iter().all(|&p| b.iter().any(|&q| apart(p, q)))
     });
-    crossing.map(|[a, b]| (home.at(a) + home.at(b)) / 2.0).collect()
+    crossing.map(|[a, b]| (initial.at(a) + initial.at(b)) / 2.0).collect()
 }
 
 /// Mends the triangles that end on the border. Returns the surface, or points near which it meets itself, is misshapen,

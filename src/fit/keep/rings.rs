@@ -24,7 +24,7 @@ pub(super) enum Stop {
 
 /// A loop of the border with the points of the cut.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Ring {
+pub(super) struct BorderRing {
     /// The first of its segments.
     pub first: u32,
     /// The places along it, in order, once around, from the beginning of that segment.
@@ -43,7 +43,7 @@ pub(super) fn matched(
     found: &[OnBorder],
     points: &[u32],
     h: f64,
-) -> Result<(u32, Ring), Vec<u32>> {
+) -> Result<(u32, BorderRing), Vec<u32>> {
     let ring_of = |p: u32| border.segments[found[p as usize].segment as usize].ring;
     let mut rings: Vec<u32> = points.iter().map(|&p| ring_of(p)).collect();
     rings.sort_unstable();
@@ -132,7 +132,7 @@ fn placed(
     length: f64,
     h: f64,
     at: impl Fn(u32) -> DVec3,
-) -> Ring {
+) -> BorderRing {
     let place = |k: usize| ordered[k].rem_euclid(length);
     let segment_at = |along: f64| segments.partition_point(|s| s.start <= along).max(1) - 1;
     // For each vertex of the loop the nearest of the points that are close to it.
@@ -153,7 +153,7 @@ fn placed(
     taken.iter().flatten().for_each(|&(_, k)| is_taken[k] = true);
     let mut stops: Vec<(f64, Stop, Option<usize>)> =
         segments.iter().zip(&taken).map(|(s, taken)| (s.start, Stop::Vertex(s.from), taken.map(|t| t.1))).collect();
-    let mut ring = Ring { first, ..Ring::default() };
+    let mut ring = BorderRing { first, ..BorderRing::default() };
     for k in (0..points.len()).filter(|&k| !is_taken[k]) {
         let s = segment_at(place(k));
         let (from, to) = (at(segments[s].from), at(segments[s].to));

@@ -4,13 +4,13 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use super::super::crease::{Crease, Place};
+use super::super::crease::{Crease, Spot};
 use super::super::cut::{Cut, subdivide};
-use super::super::facets::{Facets, Side, Sides};
-use super::super::surface::{NOT_KEPT, Surface, rounded, shape};
+use super::super::facets::{FacetId, Facets, Side, Sides};
+use super::super::surface::{OfSource, Surface, rounded, shape};
 use super::border::{Border, NONE, OnBorder};
 use super::choose::Kept;
-use super::rings::{Ring, Stop, matched};
+use super::rings::{BorderRing, Stop, matched};
 
 /// A point of the border farther than this, h, from the edge that it is to cut is the wrong one.
 const FARTHEST: f64 = 1.5;
@@ -36,27 +36,27 @@ pub(super) struct Joined {
     pub seam: Vec<(u32, DVec3)>,
 }
 
-/// Joins the kept triangles with what `home` has between them, or says where that cannot be done.
+/// Joins the kept triangles with what `initial` has between them, or says where that cannot be done.
 pub(super) fn joined(
-    home: &Surface,
+    initial: &Surface,
     facets: &Facets<'_>,
     kept: &Kept,
     border: &Border,
     h: f64,
 ) -> Result<Joined, Misfit> {
-    let labels: Vec<u32> = home.sides.par_iter().map(|sides| label(sides, kept, border)).collect();
-    let labels = with_those_beside(home, border, labels, h);
+    let labels: Vec<u32> = initial.sides.par_iter().map(|sides| label(sides, kept, border)).collect();
+    let labels = with_those_beside(initial, border, labels, h);
     let unseen = unseen(&labels, border);
     if !unseen.is_empty() {
         return Err(Misfit { unseen, ..Misfit::default() });
     }
-    let points = crossings(home, kept, border, &labels, h)?;
-    let first = home.mesh.positions.len() as u32;
-    let mut cut = Cut::of(home);
+    let points = crossings(initial, kept, border, &labels, h)?;
+    let first = initial.mesh.positions.len() as u32;
+    let mut cut = Cut::of(initial);
     let crease = |point: &OnBorder, edge: &[u32; 2]| {
         let other =
-            edge.iter().find(|&&v| labels[v as usize] == NONE).map_or(Sides::default(), |&v| home.sides[v as usize]);
-        Crease { place: Place { at: point.at, sides: other }, sag: 0.0, on_source: true, cosine: 0.0 }
+            edge.iter().find(|&&v| labels[v as usize] == NONE).map_or(Sides::default(), |&v| initial.sides[v as usize]);
+        Crease { spot: Spot { at: point.at, sides: other }, sag: 0.0, on_source: true, cosine: 0.0 }
     };
     subdivide(&mut cut, &points.iter().map(|(edge, point)| (*edge, crease(point, edge))).collect::<Vec<_>>());
     let is_other = |t: &[u32; 3]| t.iter().any(|&v| v < first && labels[v as usize] == NONE);
@@ -65,14 +65,14 @@ pub(super) fn joined(
     let found: Vec<OnBorder> = points.iter().map(|p| p.1).collect();
     let seam = seam(&cut.surface.mesh.triangles, &others, first, found.len());
     let rings = rings(border, kept, &found, &seam, h)?;
-    let joint = Joint { home, facets, kept, border, cut: &cut, first, found: &found, rings: &rings };
+    let joint = Joint { initial, facets, kept, border, cut: &cut, first, found: &found, rings: &rings };
     Ok(joint.assemble(&others))
 }
 
 /// The component whose kept triangles a vertex lies on, or [`NONE`].
 fn label(sides: &Sides, kept: &Kept, border: &Border) -> u32 {
     let component = |side: Side| {
-        let facet = side.facet() as usize;
+        let facet = side.facet().index();
         let on_kept = facet < kept.is.len() && kept.is[facet] && kept.reversed[facet] == side.reversed();
         if on_kept { border.component[facet] } else { NONE }
     };
@@ -82,9 +82,9 @@ fn label(sides: &Sides, kept: &Kept, border: &Border) -> u32 {
 }
 
 /// The labels, also for vertices beside the border: they make room for the triangles that end on it.
-fn with_those_beside(home: &Surface, border: &Border, labels: Vec<u32>, h: f64) -> Vec<u32> {
+fn with_those_beside(initial: &Surface, border: &Border, labels: Vec<u32>, h: f64) -> Vec<u32> {
     let mut wishes: Vec<(u32, u32)> = Vec::new();
-    for t in &home.mesh.triangles {
+    for t in &initial.mesh.triangles {
         for k in 0..3 {
             let (a, b) = (t[k], t[(k + 1) % 3]);
             if labels[a as usize] != NONE && labels[b as usize] == NONE {
@@ -95,7 +95,7 @@ fn with_those_beside(home: &Surface, border: &Border, labels: Vec<u32>, h: f64) 
     wishes.par_sort_unstable();
     wishes.dedup();
     let mut all = labels;
-    let close = wishes.into_par_iter().filter(|&(v, c)| border.component_near(home.at(v), CLEAR * h) == Some(c));
+    let close = wishes.into_par_iter().filter(|&(v, c)| border.component_near(initial.at(v), CLEAR * h) == Some(c));
     close.collect::<Vec<_>>().into_iter().for_each(|(v, c)| all[v as usize] = c);
     all
 }
@@ -113,7 +113,7 @@ fn unseen(labels: &[u32], border: &Border) -> Vec<u32> {
 
 /// Where the contour's edges pass the border: those with one end on kept triangles, smaller vertex first, sorted.
 fn crossings(
-    home: &Surface,
+    initial: &Surface,
     kept: &Kept,
     border: &Border,
     labels: &[u32],
@@ -121,9 +121,9 @@ fn crossings(
 ) -> Result<Vec<([u32; 2], OnBorder)>, Misfit> {
     // Where the contour goes over from one kept component to another, it has bridged a gap between them that the lattice does not
     // hold: both ends go, and no cut is needed there.
-    let edges = home.edges().filter(|[a, b]| (labels[*a as usize] == NONE) != (labels[*b as usize] == NONE));
+    let edges = initial.edges().filter(|[a, b]| (labels[*a as usize] == NONE) != (labels[*b as usize] == NONE));
     let found = edges.map(|edge| {
-        let [a, b] = edge.map(|v| home.at(v));
+        let [a, b] = edge.map(|v| initial.at(v));
         let ends = edge.map(|v| labels[v as usize]);
         let inner = if ends[0] == NONE { b } else { a };
         let known = ends[0].min(ends[1]);
@@ -160,9 +160,9 @@ fn seam(triangles: &[[u32; 3]], others: &[u32], first: u32, count: usize) -> Vec
 }
 
 /// All loops of the border with the points of the cut on them.
-fn rings(border: &Border, kept: &Kept, found: &[OnBorder], seam: &[u32], h: f64) -> Result<Vec<Ring>, Misfit> {
+fn rings(border: &Border, kept: &Kept, found: &[OnBorder], seam: &[u32], h: f64) -> Result<Vec<BorderRing>, Misfit> {
     let at = |v: u32| kept.mesh.positions[v as usize];
-    let mut rings: Vec<Option<Ring>> = vec![None; border.lengths.len()];
+    let mut rings: Vec<Option<BorderRing>> = vec![None; border.lengths.len()];
     let mut seen = vec![false; seam.len()];
     let mut wrong: Vec<DVec3> = Vec::new();
     for start in 0..seam.len() {
@@ -199,14 +199,14 @@ fn rings(border: &Border, kept: &Kept, found: &[OnBorder], seam: &[u32], h: f64)
 
 /// All that is needed to put the two together.
 struct Joint<'a> {
-    home: &'a Surface,
+    initial: &'a Surface,
     facets: &'a Facets<'a>,
     kept: &'a Kept,
     border: &'a Border,
     cut: &'a Cut,
     first: u32,
     found: &'a [OnBorder],
-    rings: &'a [Ring],
+    rings: &'a [BorderRing],
 }
 
 impl Joint<'_> {
@@ -221,14 +221,14 @@ impl Joint<'_> {
         let first = surface.mesh.triangles.len() as u32;
         for &t in others {
             let corners = self.cut.surface.mesh.triangles[t as usize];
-            let normal = shape(self.home.mesh.corners(self.cut.origin[t as usize] as usize)).0;
+            let normal = shape(self.initial.mesh.corners(self.cut.origin[t as usize] as usize)).0;
             let ids = corners.map(|v| {
                 if v >= self.first {
                     return of_point[(v - self.first) as usize];
                 }
                 if of_home[v as usize] == NONE {
                     of_home[v as usize] = surface.mesh.positions.len() as u32;
-                    surface.add(self.home.place(v), NOT_KEPT);
+                    surface.add(self.initial.spot(v), OfSource::NONE);
                 }
                 of_home[v as usize]
             });
@@ -255,7 +255,7 @@ impl Joint<'_> {
                 }
             }
         }
-        surface.facets.resize(surface.mesh.triangles.len(), NOT_KEPT);
+        surface.triangles_of.resize(surface.mesh.triangles.len(), OfSource::NONE);
         Joined { surface, first, seam: normals }
     }
 
@@ -266,7 +266,10 @@ impl Joint<'_> {
             for v in self.kept.mesh.triangles[facet as usize] {
                 if of_source[v as usize] == NONE {
                     of_source[v as usize] = surface.mesh.positions.len() as u32;
-                    surface.add(Place { at: self.kept.mesh.positions[v as usize], sides: Sides::default() }, v);
+                    surface.add(
+                        Spot { at: self.kept.mesh.positions[v as usize], sides: Sides::default() },
+                        OfSource::new(v),
+                    );
                 }
             }
         }
@@ -275,7 +278,7 @@ impl Joint<'_> {
             for (t, corners) in self.kept.mesh.triangles.iter().enumerate() {
                 if self.kept.is[t] == kept_ones {
                     for id in corners.iter().map(|&v| of_source[v as usize]).filter(|&id| id != NONE) {
-                        surface.sides[id as usize].add(Side::new(t as u32, self.kept.reversed[t]));
+                        surface.sides[id as usize].add(self.kept.side(t as u32));
                     }
                 }
             }
@@ -290,14 +293,16 @@ impl Joint<'_> {
             for &(point, segment, at) in &ring.places {
                 let facet = self.border.segments[segment as usize].facet;
                 let mut sides = self.cut.surface.sides[(self.first + point) as usize];
-                sides.add(Side::new(facet, self.kept.reversed[facet as usize]));
+                sides.add(self.kept.side(facet));
                 if let Some(across) = self.facets.across(facet, self.edge_of(segment)) {
                     sides = Sides::of(
-                        [Side::new(across, self.kept.reversed[facet as usize])].into_iter().chain(sides.iter()),
+                        [Side::new(FacetId::of_triangle(across), self.kept.reversed[facet as usize])]
+                            .into_iter()
+                            .chain(sides.iter()),
                     );
                 }
                 of_point[point as usize] = surface.mesh.positions.len() as u32;
-                surface.add(Place { at: rounded(at), sides }, NOT_KEPT);
+                surface.add(Spot { at: rounded(at), sides }, OfSource::NONE);
             }
             for &(point, stop) in &ring.points {
                 if let Stop::Vertex(v) = ring.stops[stop as usize] {
@@ -346,7 +351,7 @@ impl Joint<'_> {
                 fan(&mut parts, from, to, &ids);
             }
             surface.mesh.triangles.extend(parts);
-            surface.facets.resize(surface.mesh.triangles.len(), facet);
+            surface.triangles_of.resize(surface.mesh.triangles.len(), OfSource::new(facet));
         }
     }
 

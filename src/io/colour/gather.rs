@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::super::soup::counted;
+use super::super::text::counted;
 use super::{Colours, Rgba, WHITE};
 use crate::mesh::TriMesh;
 

@@ -4,7 +4,7 @@ mod gather;
 mod spread;
 mod srgb;
 
-use super::Format;
+use super::format::Format;
 use crate::mesh::TriMesh;
 
 pub(super) use gather::{Gathered, LEVELS_OF_WHITE, Levels};

@@ -1,12 +1,13 @@
 //! Accessors: typed numbers in a buffer view, with sparse replacements.
 
-use gltf_json::accessor::{Accessor, ComponentType, IndexComponentType, Type};
-use gltf_json::validation::Checked;
-use gltf_json::{Index, Root};
+use gltf::accessor::{DataType, Dimensions};
+use gltf::json::validation::Checked;
+use gltf::{Accessor, Document};
 
-use super::super::error::{ReadError, ReadProblem};
+use super::super::error::{FileError, FileProblem};
 use super::super::soup::Expansion;
-use super::buffers::{Buffers, missing};
+use super::buffers::Buffers;
+use super::checked::{self, missing};
 
 /// A view of fields that are known to lie within their buffer.
 struct Fields<'a> {
@@ -18,10 +19,10 @@ struct Fields<'a> {
 
 impl<'a> Fields<'a> {
     /// `count` fields of `size` bytes from byte `offset`, `stride` bytes apart.
-    fn new(bytes: &'a [u8], offset: u64, stride: Option<usize>, size: usize, count: u64) -> Result<Self, ReadProblem> {
+    fn new(bytes: &'a [u8], offset: u64, stride: Option<usize>, size: usize, count: u64) -> Result<Self, FileProblem> {
         let stride = stride.unwrap_or(size);
         if stride < size {
-            return Err(ReadProblem::syntax(format!("a stride of at least {size} bytes"), stride.to_string()));
+            return Err(FileProblem::syntax(format!("a stride of at least {size} bytes"), stride.to_string()));
         }
         let all =
             count.checked_sub(1).map_or(Some(0), |gaps| gaps.checked_mul(stride as u64)?.checked_add(size as u64));
@@ -32,7 +33,7 @@ impl<'a> Fields<'a> {
             }
             _ => {
                 let expected = format!("{count} values of {size} bytes from byte {offset}");
-                Err(ReadProblem::truncated(expected, format!("the buffer view has {} bytes", bytes.len())))
+                Err(FileProblem::truncated(expected, format!("the buffer view has {} bytes", bytes.len())))
             }
         }
     }
@@ -43,29 +44,23 @@ impl<'a> Fields<'a> {
     }
 }
 
-fn accessor(root: &Root, index: Index<Accessor>) -> Result<&Accessor, ReadError> {
-    let count = root.accessors.len();
-    root.get(index).ok_or_else(|| ReadError::new(missing(index.value(), count, "accessors")))
+fn item(accessor: &Accessor<'_>) -> String {
+    format!("accessors[{}]", accessor.index())
 }
 
-fn item(index: Index<Accessor>) -> String {
-    format!("accessors[{}]", index.value())
-}
-
-/// The positions behind accessor `index`: floats, or integers of `KHR_mesh_quantization`.
+/// The positions behind an accessor: floats, or integers of `KHR_mesh_quantization`.
 pub(super) fn positions(
-    root: &Root,
+    document: &Document,
     buffers: &Buffers<'_>,
-    index: Index<Accessor>,
+    accessor: &Accessor<'_>,
     allowance: &mut Expansion,
-) -> Result<Vec<[f64; 3]>, ReadError> {
-    let fail = |problem| ReadError::item(item(index), problem);
-    let accessor = accessor(root, index)?;
-    let kind = component_type(accessor).map_err(fail)?;
-    if !matches!(accessor.type_, Checked::Valid(Type::Vec3)) {
-        return Err(fail(ReadProblem::syntax("positions of type VEC3", "another type")));
+) -> Result<Vec<[f64; 3]>, FileError> {
+    let fail = |problem| FileError::item(item(accessor), problem);
+    let kind = checked::data_type(document, accessor).map_err(fail)?;
+    if checked::dimensions(document, accessor) != Some(Dimensions::Vec3) {
+        return Err(fail(FileProblem::syntax("positions of type VEC3", "another type")));
     }
-    let normalized = accessor.normalized;
+    let normalized = accessor.normalized();
     let decode = |field: &[u8]| {
         let mut p = [0.0; 3];
         for (x, part) in p.iter_mut().zip(field.chunks_exact(kind.size())) {
@@ -73,25 +68,24 @@ pub(super) fn positions(
         }
         p
     };
-    vectors(root, buffers, index, Shape { size: 3 * kind.size(), zero: [0.0; 3], decode }, allowance)
+    vectors(document, buffers, accessor, Shape { size: 3 * kind.size(), zero: [0.0; 3], decode }, allowance)
 }
 
-/// The colours behind accessor `index`: linear light from 0 to 1, then alpha.
+/// The colours behind an accessor: linear light from 0 to 1, then alpha.
 pub(super) fn colours(
-    root: &Root,
+    document: &Document,
     buffers: &Buffers<'_>,
-    index: Index<Accessor>,
+    accessor: &Accessor<'_>,
     allowance: &mut Expansion,
-) -> Result<Vec<[f32; 4]>, ReadError> {
-    let fail = |problem| ReadError::item(item(index), problem);
-    let accessor = accessor(root, index)?;
-    let kind = component_type(accessor).map_err(fail)?;
-    let channels = match (&accessor.type_, kind) {
-        (Checked::Valid(Type::Vec3), ComponentType::F32 | ComponentType::U8 | ComponentType::U16) => 3,
-        (Checked::Valid(Type::Vec4), ComponentType::F32 | ComponentType::U8 | ComponentType::U16) => 4,
+) -> Result<Vec<[f32; 4]>, FileError> {
+    let fail = |problem| FileError::item(item(accessor), problem);
+    let kind = checked::data_type(document, accessor).map_err(fail)?;
+    let channels = match (checked::dimensions(document, accessor), kind) {
+        (Some(Dimensions::Vec3), DataType::F32 | DataType::U8 | DataType::U16) => 3,
+        (Some(Dimensions::Vec4), DataType::F32 | DataType::U8 | DataType::U16) => 4,
         _ => {
             let expected = "colours of type VEC3 or VEC4 in floats or unsigned integers of 8 or 16 bits";
-            return Err(fail(ReadProblem::syntax(expected, "another type")));
+            return Err(fail(FileProblem::syntax(expected, "another type")));
         }
     };
     let decode = |field: &[u8]| {
@@ -104,23 +98,22 @@ pub(super) fn colours(
     };
     let mut zero = [0.0; 4];
     zero[channels..].fill(1.0);
-    vectors(root, buffers, index, Shape { size: channels * kind.size(), zero, decode }, allowance)
+    vectors(document, buffers, accessor, Shape { size: channels * kind.size(), zero, decode }, allowance)
 }
 
-/// The texture coordinates behind accessor `index`.
+/// The texture coordinates behind an accessor.
 pub(super) fn coordinates(
-    root: &Root,
+    document: &Document,
     buffers: &Buffers<'_>,
-    index: Index<Accessor>,
+    accessor: &Accessor<'_>,
     allowance: &mut Expansion,
-) -> Result<Vec<[f32; 2]>, ReadError> {
-    let fail = |problem| ReadError::item(item(index), problem);
-    let accessor = accessor(root, index)?;
-    let kind = component_type(accessor).map_err(fail)?;
-    if !matches!(accessor.type_, Checked::Valid(Type::Vec2)) {
-        return Err(fail(ReadProblem::syntax("coordinates of type VEC2", "another type")));
+) -> Result<Vec<[f32; 2]>, FileError> {
+    let fail = |problem| FileError::item(item(accessor), problem);
+    let kind = checked::data_type(document, accessor).map_err(fail)?;
+    if checked::dimensions(document, accessor) != Some(Dimensions::Vec2) {
+        return Err(fail(FileProblem::syntax("coordinates of type VEC2", "another type")));
     }
-    let normalized = accessor.normalized;
+    let normalized = accessor.normalized();
     let decode = |field: &[u8]| {
         let mut place = [0.0; 2];
         for (x, part) in place.iter_mut().zip(field.chunks_exact(kind.size())) {
@@ -128,26 +121,25 @@ pub(super) fn coordinates(
         }
         place
     };
-    vectors(root, buffers, index, Shape { size: 2 * kind.size(), zero: [0.0; 2], decode }, allowance)
+    vectors(document, buffers, accessor, Shape { size: 2 * kind.size(), zero: [0.0; 2], decode }, allowance)
 }
 
-/// The translations, rotations or scales of instances behind accessor `index`, each of `width` numbers.
+/// The translations, rotations or scales of instances behind an accessor, each of `width` numbers.
 pub(super) fn instance_values(
-    root: &Root,
+    document: &Document,
     buffers: &Buffers<'_>,
-    index: Index<Accessor>,
+    accessor: &Accessor<'_>,
     width: usize,
     allowance: &mut Expansion,
-) -> Result<Vec<[f64; 4]>, ReadError> {
-    let fail = |problem| ReadError::item(item(index), problem);
-    let accessor = accessor(root, index)?;
-    let kind = component_type(accessor).map_err(fail)?;
-    let wanted = if width == 4 { Type::Vec4 } else { Type::Vec3 };
-    if !matches!(&accessor.type_, Checked::Valid(found) if *found == wanted) {
-        return Err(fail(ReadProblem::syntax(format!("values of type VEC{width} for instances"), "another type")));
+) -> Result<Vec<[f64; 4]>, FileError> {
+    let fail = |problem| FileError::item(item(accessor), problem);
+    let kind = checked::data_type(document, accessor).map_err(fail)?;
+    let wanted = if width == 4 { Dimensions::Vec4 } else { Dimensions::Vec3 };
+    if checked::dimensions(document, accessor) != Some(wanted) {
+        return Err(fail(FileProblem::syntax(format!("values of type VEC{width} for instances"), "another type")));
     }
     // Rotations in integers must be normalised; a file that forgets to say so can mean nothing else.
-    let normalized = accessor.normalized || width == 4;
+    let normalized = accessor.normalized() || width == 4;
     let decode = |field: &[u8]| {
         let mut value = [0.0; 4];
         for (x, part) in value.iter_mut().zip(field.chunks_exact(kind.size())) {
@@ -155,19 +147,7 @@ pub(super) fn instance_values(
         }
         value
     };
-    vectors(root, buffers, index, Shape { size: width * kind.size(), zero: [0.0; 4], decode }, allowance)
-}
-
-/// How many values accessor `index` has, where it is there.
-pub(super) fn count(root: &Root, index: Index<Accessor>) -> usize {
-    root.get(index).map_or(0, |accessor| usize::try_from(accessor.count.0).unwrap_or(usize::MAX))
-}
-
-fn component_type(accessor: &Accessor) -> Result<ComponentType, ReadProblem> {
-    match &accessor.component_type {
-        Checked::Valid(kind) => Ok(kind.0),
-        Checked::Invalid => Err(ReadProblem::syntax("a component type", "another value")),
-    }
+    vectors(document, buffers, accessor, Shape { size: width * kind.size(), zero: [0.0; 4], decode }, allowance)
 }
 
 /// What the values of an accessor look like.
@@ -180,33 +160,33 @@ struct Shape<T, F> {
     decode: F,
 }
 
-/// The values behind accessor `index`, with sparse ones replaced.
+/// The values behind an accessor, with sparse ones replaced.
 fn vectors<T: Copy>(
-    root: &Root,
+    document: &Document,
     buffers: &Buffers<'_>,
-    index: Index<Accessor>,
+    accessor: &Accessor<'_>,
     shape: Shape<T, impl Fn(&[u8]) -> T>,
     allowance: &mut Expansion,
-) -> Result<Vec<T>, ReadError> {
-    let fail = |problem| ReadError::item(item(index), problem);
-    let accessor = accessor(root, index)?;
+) -> Result<Vec<T>, FileError> {
+    let fail = |problem| FileError::item(item(accessor), problem);
     let Shape { size, zero, decode } = shape;
-    let count = accessor.count.0;
+    let count = accessor.count() as u64;
     allowance.spend(count).map_err(fail)?;
-    let mut values: Vec<T> = match accessor.buffer_view {
+    let mut values: Vec<T> = match checked::view_of(document, accessor) {
         Some(view) => {
-            let (bytes, stride) = buffers.view(root, view)?;
-            let offset = accessor.byte_offset.unwrap_or_default().0;
+            let (bytes, stride) = buffers.view(document, view)?;
+            let offset = accessor.offset() as u64;
             Fields::new(bytes, offset, stride, size, count).map_err(fail)?.iter().map(&decode).collect()
         }
-        None => vec![zero; usize::try_from(count).unwrap_or_default()],
+        None => vec![zero; accessor.count()],
     };
-    if let Some(sparse) = &accessor.sparse {
-        let (bytes, _) = buffers.view(root, sparse.indices.buffer_view)?;
-        let places =
-            integers(bytes, sparse.indices.byte_offset.0, None, &sparse.indices.component_type, sparse.count.0)
-                .map_err(fail)?;
-        let (bytes, _) = buffers.view(root, sparse.values.buffer_view)?;
+    if let Some(sparse) = checked::sparse(document, accessor) {
+        let (bytes, _) = buffers.view(document, sparse.indices.buffer_view.value())?;
+        let Checked::Valid(kind) = sparse.indices.component_type else {
+            return Err(fail(not_unsigned()));
+        };
+        let places = integers(bytes, sparse.indices.byte_offset.0, None, kind.0, sparse.count.0).map_err(fail)?;
+        let (bytes, _) = buffers.view(document, sparse.values.buffer_view.value())?;
         let fields = Fields::new(bytes, sparse.values.byte_offset.0, None, size, sparse.count.0).map_err(fail)?;
         for (place, field) in places.into_iter().zip(fields.iter()) {
             let count = values.len();
@@ -217,55 +197,54 @@ fn vectors<T: Copy>(
     Ok(values)
 }
 
-/// The indices behind accessor `index`.
+/// The indices behind an accessor.
 pub(super) fn indices(
-    root: &Root,
+    document: &Document,
     buffers: &Buffers<'_>,
-    index: Index<Accessor>,
+    accessor: &Accessor<'_>,
     allowance: &mut Expansion,
-) -> Result<Vec<u32>, ReadError> {
-    let fail = |problem| ReadError::item(item(index), problem);
-    let accessor = accessor(root, index)?;
-    let (Some(view), None, Checked::Valid(Type::Scalar)) = (accessor.buffer_view, &accessor.sparse, &accessor.type_)
-    else {
-        return Err(fail(ReadProblem::syntax("scalar indices in a buffer view", "another kind of accessor")));
+) -> Result<Vec<u32>, FileError> {
+    let fail = |problem| FileError::item(item(accessor), problem);
+    let view = checked::view_of(document, accessor).filter(|_| checked::sparse(document, accessor).is_none());
+    let (Some(view), Some(Dimensions::Scalar)) = (view, checked::dimensions(document, accessor)) else {
+        return Err(fail(FileProblem::syntax("scalar indices in a buffer view", "another kind of accessor")));
     };
-    let kind = match &accessor.component_type {
-        Checked::Valid(kind) => Checked::Valid(IndexComponentType(kind.0)),
-        Checked::Invalid => Checked::Invalid,
-    };
-    allowance.spend(accessor.count.0).map_err(fail)?;
-    let (bytes, stride) = buffers.view(root, view)?;
-    integers(bytes, accessor.byte_offset.unwrap_or_default().0, stride, &kind, accessor.count.0).map_err(fail)
+    let kind = checked::data_type(document, accessor).map_err(|_| fail(not_unsigned()))?;
+    allowance.spend(accessor.count() as u64).map_err(fail)?;
+    let (bytes, stride) = buffers.view(document, view)?;
+    integers(bytes, accessor.offset() as u64, stride, kind, accessor.count() as u64).map_err(fail)
+}
+
+fn not_unsigned() -> FileProblem {
+    FileProblem::syntax("indices of an unsigned integer type", "another type")
 }
 
 fn integers(
     bytes: &[u8],
     offset: u64,
     stride: Option<usize>,
-    kind: &Checked<IndexComponentType>,
+    kind: DataType,
     count: u64,
-) -> Result<Vec<u32>, ReadProblem> {
-    use ComponentType::{U8, U16, U32};
-    let Checked::Valid(IndexComponentType(kind @ (U8 | U16 | U32))) = *kind else {
-        return Err(ReadProblem::syntax("indices of an unsigned integer type", "another type"));
-    };
+) -> Result<Vec<u32>, FileProblem> {
+    if !matches!(kind, DataType::U8 | DataType::U16 | DataType::U32) {
+        return Err(not_unsigned());
+    }
     let fields = Fields::new(bytes, offset, stride, kind.size(), count)?;
     Ok(fields.iter().map(|field| component(field, kind, false) as u32).collect())
 }
 
 /// The number in `field`; the caller sees to its size.
-fn component(field: &[u8], kind: ComponentType, normalized: bool) -> f64 {
+fn component(field: &[u8], kind: DataType, normalized: bool) -> f64 {
     let mut raw = [0; 4];
     raw[..field.len().min(4)].copy_from_slice(&field[..field.len().min(4)]);
     let bits = u32::from_le_bytes(raw);
     let (value, one) = match kind {
-        ComponentType::I8 => (f64::from(bits as i8), 127.0),
-        ComponentType::U8 => (f64::from(bits as u8), 255.0),
-        ComponentType::I16 => (f64::from(bits as i16), 32767.0),
-        ComponentType::U16 => (f64::from(bits as u16), 65535.0),
-        ComponentType::U32 => (f64::from(bits), 1.0),
-        ComponentType::F32 => (f64::from(f32::from_bits(bits)), 1.0),
+        DataType::I8 => (f64::from(bits as i8), 127.0),
+        DataType::U8 => (f64::from(bits as u8), 255.0),
+        DataType::I16 => (f64::from(bits as i16), 32767.0),
+        DataType::U16 => (f64::from(bits as u16), 65535.0),
+        DataType::U32 => (f64::from(bits), 1.0),
+        DataType::F32 => (f64::from(f32::from_bits(bits)), 1.0),
     };
     if normalized { (value / one).max(-1.0) } else { value }
 }

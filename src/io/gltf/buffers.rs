@@ -7,11 +7,12 @@ use std::path::Path;
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
-use gltf_json::{Index, Root, buffer::View};
+use gltf::Document;
 
-use super::super::error::{ReadError, ReadProblem};
+use super::super::error::{FileError, FileProblem};
 use super::super::text::quoted;
 use super::super::texture::{MOST_BESIDE, file_beside, read_beside};
+use super::checked;
 
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &STANDARD,
@@ -27,13 +28,14 @@ pub(super) struct Buffers<'a> {
 }
 
 impl<'a> Buffers<'a> {
-    pub(super) fn load(root: &Root, binary: Option<&'a [u8]>, path: Option<&Path>) -> Result<Self, ReadError> {
+    pub(super) fn load(document: &Document, binary: Option<&'a [u8]>, path: Option<&Path>) -> Result<Self, FileError> {
+        let declared = &document.as_json().buffers;
         let mut contents = vec![Cow::Borrowed(binary.unwrap_or_default())];
-        let mut buffers = Vec::with_capacity(root.buffers.len());
+        let mut buffers = Vec::with_capacity(declared.len());
         let mut known = BTreeMap::new();
         let mut left = MOST_BESIDE;
-        for (i, buffer) in root.buffers.iter().enumerate() {
-            let place = |problem| ReadError::item(format!("buffers[{i}]"), problem);
+        for (i, buffer) in declared.iter().enumerate() {
+            let place = |problem| FileError::item(format!("buffers[{i}]"), problem);
             let content = match &buffer.uri {
                 None if i == 0 => 0,
                 // Without a URI only the first buffer has bytes; extensions use such buffers.
@@ -44,8 +46,8 @@ impl<'a> Buffers<'a> {
                 Some(uri) => match known.get(uri.as_str()) {
                     Some(&content) => content,
                     None => {
-                        let same = |other: &&gltf_json::Buffer| other.uri.as_deref() == Some(uri.as_str());
-                        let wanted = root.buffers.iter().filter(same).map(|other| other.byte_length.0).max();
+                        let same = |other: &&gltf::json::Buffer| other.uri.as_deref() == Some(uri.as_str());
+                        let wanted = declared.iter().filter(same).map(|other| other.byte_length.0).max();
                         let content = fetch(uri, path, wanted.unwrap_or_default(), &mut left).map_err(place)?;
                         contents.push(Cow::Owned(content));
                         known.insert(uri.as_str(), contents.len() - 1);
@@ -64,70 +66,62 @@ impl<'a> Buffers<'a> {
         self.contents.iter().map(|content| content.len()).sum()
     }
 
-    /// The bytes of a buffer view and its stride.
-    pub(super) fn view(&self, root: &Root, view: Index<View>) -> Result<(&[u8], Option<usize>), ReadError> {
-        let item = format!("bufferViews[{}]", view.value());
-        let fail = |problem| ReadError::item(item.clone(), problem);
-        let view =
-            root.get(view).ok_or_else(|| fail(missing(view.value(), root.buffer_views.len(), "buffer views")))?;
-        let buffer = view.buffer.value();
+    /// The bytes of the buffer view of this number, and its stride.
+    pub(super) fn view(&self, document: &Document, index: usize) -> Result<(&[u8], Option<usize>), FileError> {
+        let fail = |problem| FileError::item(format!("bufferViews[{index}]"), problem);
+        let view = checked::view(document, index).map_err(fail)?;
+        let buffer = view.buffer().index();
         let &(content, length) =
-            self.buffers.get(buffer).ok_or_else(|| fail(missing(buffer, self.buffers.len(), "buffers")))?;
-        let start = view.byte_offset.unwrap_or_default().0;
-        let range = start.checked_add(view.byte_length.0).and_then(|end| {
-            Some(usize::try_from(start).ok()?..usize::try_from(end).ok().filter(|&end| end <= length)?)
-        });
-        let bytes = range.and_then(|range| self.contents[content].get(range)).ok_or_else(|| {
-            let expected = format!("{} bytes from byte {start} of buffer {buffer}", view.byte_length.0);
-            fail(ReadProblem::truncated(expected, format!("there are {length}")))
+            self.buffers.get(buffer).ok_or_else(|| fail(checked::missing(buffer, self.buffers.len(), "buffers")))?;
+        let range = view.offset()..view.offset().saturating_add(view.length());
+        let bytes = self.contents[content][..length].get(range).ok_or_else(|| {
+            let expected = format!("{} bytes from byte {} of buffer {buffer}", view.length(), view.offset());
+            fail(FileProblem::truncated(expected, format!("there are {length}")))
         })?;
-        Ok((bytes, view.byte_stride.map(|stride| stride.0)))
+        // A stride of zero is an error, which the crate takes for none.
+        let stride = document.as_json().buffer_views.get(index).and_then(|view| view.byte_stride);
+        Ok((bytes, stride.map(|stride| stride.0)))
     }
 }
 
-/// The problem of an index that leads nowhere.
-pub(super) fn missing(index: usize, count: usize, what: &'static str) -> ReadProblem {
-    ReadProblem::IndexOutOfRange { index: index as i64, count, what }
-}
-
 /// What `uri` leads to: of a file at most the first `wanted` bytes, which are taken from those that are `left`.
-fn fetch(uri: &str, path: Option<&Path>, wanted: u64, left: &mut u64) -> Result<Vec<u8>, ReadProblem> {
+fn fetch(uri: &str, path: Option<&Path>, wanted: u64, left: &mut u64) -> Result<Vec<u8>, FileProblem> {
     if let Some(data) = uri.strip_prefix("data:") {
         return decoded_data(data);
     }
     let base = path.ok_or_else(|| {
         let uri = quoted(uri.as_bytes());
-        ReadProblem::Unsupported(format!(
+        FileProblem::Unsupported(format!(
             "the buffer {uri} lies in another file, which a stream does not give; read it from its place, or use GLB"
         ))
     })?;
     let elsewhere = || {
         let uri = quoted(uri.as_bytes());
-        ReadProblem::Unsupported(format!(
+        FileProblem::Unsupported(format!(
             "the buffer {uri} is not a file in the folder of the glTF file, and is not read"
         ))
     };
     let decoded = String::from_utf8(percent_decoded(uri)).map_err(|_| elsewhere())?;
     let file = file_beside(&decoded, base).ok_or_else(elsewhere)?;
     let failed = |e: std::io::Error| {
-        ReadProblem::Io(std::io::Error::new(e.kind(), format!("{}: {}", file.display(), plain(&e))))
+        FileProblem::Io(std::io::Error::new(e.kind(), format!("{}: {}", file.display(), plain(&e))))
     };
     // Links are followed to where they lead, and must not lead out of the folder.
     let cap = wanted.min(*left);
     let bytes = read_beside(&file, base, cap).map_err(failed)?.ok_or_else(elsewhere)?;
     if wanted > cap && bytes.len() as u64 == cap {
-        return Err(ReadProblem::TooLarge { what: "bytes of the files beside the document", limit: MOST_BESIDE });
+        return Err(FileProblem::TooLarge { what: "bytes of the files beside the document", limit: MOST_BESIDE });
     }
     *left -= bytes.len() as u64;
     Ok(bytes)
 }
 
 /// What follows `data:` in a URI.
-pub(super) fn decoded_data(data: &str) -> Result<Vec<u8>, ReadProblem> {
+pub(super) fn decoded_data(data: &str) -> Result<Vec<u8>, FileProblem> {
     let (kind, data) =
-        data.split_once(',').ok_or_else(|| ReadProblem::syntax("a comma in a data URI", quoted(data.as_bytes())))?;
+        data.split_once(',').ok_or_else(|| FileProblem::syntax("a comma in a data URI", quoted(data.as_bytes())))?;
     match kind.ends_with(";base64") {
-        true => BASE64.decode(data).map_err(|e| ReadProblem::syntax("base64 data", e.to_string())),
+        true => BASE64.decode(data).map_err(|e| FileProblem::syntax("base64 data", e.to_string())),
         false => Ok(percent_decoded(data)),
     }
 }

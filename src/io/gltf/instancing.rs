@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use glam::{DMat4, DQuat, DVec3, DVec4};
-use gltf_json::{Index, Root};
+use gltf::Document;
 use serde::Deserialize;
 
-use super::super::error::{ReadError, ReadProblem};
+use super::super::error::{FileError, FileProblem};
 use super::super::soup::Expansion;
 use super::accessor;
 use super::buffers::Buffers;
+use super::checked;
 
 /// The name of the extension.
 pub(super) const NAME: &str = "EXT_mesh_gpu_instancing";
@@ -30,7 +31,7 @@ struct Attributes {
 }
 
 #[derive(Deserialize)]
-struct Document {
+struct Extended {
     #[serde(default)]
     nodes: Vec<Node>,
 }
@@ -53,11 +54,11 @@ struct Extension {
 
 impl Instancing {
     /// Reads them from the document, if it uses the extension.
-    pub(super) fn read(root: &Root, json: &[u8]) -> Result<Self, serde_json::Error> {
-        if !root.extensions_used.iter().chain(&root.extensions_required).any(|name| name == NAME) {
+    pub(super) fn read(document: &Document, json: &[u8]) -> Result<Self, serde_json::Error> {
+        if !document.extensions_used().chain(document.extensions_required()).any(|name| name == NAME) {
             return Ok(Self::default());
         }
-        let document: Document = serde_json::from_slice(json)?;
+        let document: Extended = serde_json::from_slice(json)?;
         let attributes = document.nodes.into_iter().enumerate().filter_map(|(node, content)| {
             let instancing = content.extensions?.instancing?;
             Some((node, instancing.attributes))
@@ -69,13 +70,15 @@ impl Instancing {
     pub(super) fn of(
         &self,
         node: usize,
-        root: &Root,
+        document: &Document,
         buffers: &Buffers<'_>,
         allowance: &mut Expansion,
-    ) -> Result<Option<Copies>, ReadError> {
+    ) -> Result<Option<Copies>, FileError> {
         let Some(attributes) = self.0.get(&node) else { return Ok(None) };
-        let mut values = |index: Option<u32>, width: usize| {
-            index.map(|index| accessor::instance_values(root, buffers, Index::new(index), width, allowance)).transpose()
+        let mut values = |index: Option<u32>, width: usize| -> Result<_, FileError> {
+            let Some(index) = index else { return Ok(None) };
+            let values = checked::accessor(document, index as usize)?;
+            accessor::instance_values(document, buffers, &values, width, allowance).map(Some)
         };
         let translations = values(attributes.translation, 3)?;
         let rotations = values(attributes.rotation, 4)?;
@@ -83,8 +86,8 @@ impl Instancing {
         let counts: Vec<usize> = [&translations, &rotations, &scales].into_iter().flatten().map(Vec::len).collect();
         let count = counts.first().copied().unwrap_or_default();
         if let Some(other) = counts.iter().find(|other| **other != count) {
-            let problem = ReadProblem::syntax(format!("{count} values of each kind for {NAME}"), other.to_string());
-            return Err(ReadError::item(format!("nodes[{node}]"), problem));
+            let problem = FileProblem::syntax(format!("{count} values of each kind for {NAME}"), other.to_string());
+            return Err(FileError::item(format!("nodes[{node}]"), problem));
         }
         Ok(Some(Copies { translations, rotations, scales, count }))
     }

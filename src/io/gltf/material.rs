@@ -1,13 +1,9 @@
 //! What a material makes of the colours of vertices.
 
-use gltf_json::Root;
-use gltf_json::material::{AlphaMode, Material};
-use gltf_json::mesh::Primitive;
-use gltf_json::validation::Checked;
+use gltf::{Document, Material};
 
 use super::super::colour::{Rgba, srgb_from_linear};
-use super::super::error::ReadProblem;
-use super::buffers::missing;
+use super::checked;
 
 /// The colour of a material.
 pub(super) struct Tint {
@@ -18,18 +14,11 @@ pub(super) struct Tint {
 }
 
 impl Tint {
-    /// The tint of the material of `primitive`; opaque white if it has none.
-    pub(super) fn of(root: &Root, primitive: &Primitive) -> Result<Self, ReadProblem> {
-        let Some(index) = primitive.material else { return Ok(Self::plain()) };
-        let material = root.get(index).ok_or_else(|| missing(index.value(), root.materials.len(), "materials"))?;
-        Ok(Self::of_material(material))
-    }
-
     /// The tint of a material.
-    pub(super) fn of_material(material: &Material) -> Self {
+    pub(super) fn of(document: &Document, material: &Material<'_>) -> Self {
         Self {
-            factor: material.pbr_metallic_roughness.base_color_factor.0,
-            transparent: matches!(material.alpha_mode, Checked::Valid(AlphaMode::Blend | AlphaMode::Mask)),
+            factor: material.pbr_metallic_roughness().base_color_factor(),
+            transparent: checked::is_transparent(document, material),
         }
     }
 

@@ -1,8 +1,9 @@
-//! glTF 2.0, as JSON and in one binary file. The JSON is taken apart by `gltf-json`; every index,
-//! range and transform is checked here, because the types promise none of them.
+//! glTF 2.0, as JSON and in one binary file. The document and the way through it are those of the `gltf` crate; every index, range and
+//! transform is checked here, because its types promise none of them and its traversal panics where one is wrong (see `checked`).
 
 mod accessor;
 mod buffers;
+mod checked;
 mod content;
 mod instancing;
 mod material;
@@ -12,11 +13,12 @@ mod write;
 
 use std::path::Path;
 
-use gltf_json::Root;
+use gltf::Document;
+use gltf::json;
 
 use self::buffers::Buffers;
 use self::instancing::Instancing;
-use super::error::{ReadError, ReadProblem};
+use super::error::{FileError, FileProblem};
 use super::soup::Expansion;
 use super::{Format, Loaded, Unit};
 
@@ -33,25 +35,25 @@ const OF_LOOKS: [&str; 7] =
     ["KHR_materials_", "KHR_texture_", "KHR_lights_", "EXT_texture_", "EXT_lights_", "MSFT_texture_", "EXT_materials_"];
 
 /// Reads a glTF file in JSON.
-pub(super) fn read_json(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, ReadError> {
+pub(super) fn read_json(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, FileError> {
     let json = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     read_document(json, None, bytes.len(), path, Format::Gltf)
 }
 
 /// Reads a binary glTF file: a header and chunks, the JSON first.
-pub(super) fn read_glb(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, ReadError> {
+pub(super) fn read_glb(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, FileError> {
     let word = |at: usize| bytes.get(at..at + 4).and_then(|w| w.try_into().ok()).map(u32::from_le_bytes);
     let truncated = |expected: &str| {
         let found = format!("the file ends after {} bytes", bytes.len());
-        ReadError::byte(bytes.len(), ReadProblem::truncated(expected, found))
+        FileError::byte(bytes.len(), FileProblem::truncated(expected, found))
     };
     if !bytes.starts_with(MAGIC) {
         let found = super::text::quoted(&bytes[..bytes.len().min(4)]);
-        return Err(ReadError::byte(0, ReadProblem::syntax("`glTF`", found)));
+        return Err(FileError::byte(0, FileProblem::syntax("`glTF`", found)));
     }
     let version = word(4).ok_or_else(|| truncated("a version"))?;
     if version != 2 {
-        return Err(ReadError::byte(4, other_version(&format!("version {version}"))));
+        return Err(FileError::byte(4, other_version(&format!("version {version}"))));
     }
     let length = word(8).ok_or_else(|| truncated("a length"))? as usize;
     let whole = bytes.get(..length).ok_or_else(|| truncated(&format!("{length} bytes (bytes 8 to 11 say so)")))?;
@@ -66,31 +68,32 @@ pub(super) fn read_glb(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, Read
         }
         rest = after;
     }
-    let json = chunks[0].ok_or_else(|| ReadError::byte(12, ReadProblem::syntax("a JSON chunk", "none")))?;
+    let json = chunks[0].ok_or_else(|| FileError::byte(12, FileProblem::syntax("a JSON chunk", "none")))?;
     read_document(json, chunks[1], bytes.len(), path, Format::Glb)
 }
 
 fn read_document(
-    json: &[u8],
+    text: &[u8],
     binary: Option<&[u8]>,
     length: usize,
     path: Option<&Path>,
     format: Format,
-) -> Result<Loaded, ReadError> {
+) -> Result<Loaded, FileError> {
     // An empty object, two bytes, becomes hundreds of bytes in memory; in real files each has members.
-    let (objects, limit) = (json.iter().filter(|&&b| b == b'{').count(), 1024 + json.len() / 8);
+    let (objects, limit) = (text.iter().filter(|&&b| b == b'{').count(), 1024 + text.len() / 8);
     if objects > limit {
-        return Err(ReadProblem::TooLarge { what: "JSON objects", limit: limit as u64 }.into());
+        return Err(FileProblem::TooLarge { what: "JSON objects", limit: limit as u64 }.into());
     }
-    check_version(json)?;
-    let root: Root = gltf_json::deserialize::from_slice(json).map_err(|e| not_gltf(&e))?;
-    let looks = check_required(&root)?;
-    let instancing = Instancing::read(&root, json).map_err(|e| not_gltf(&e))?;
-    let buffers = Buffers::load(&root, binary, path)?;
+    check_version(text)?;
+    let root: json::Root = json::deserialize::from_slice(text).map_err(|e| not_gltf(&e))?;
+    let document = Document::from_json_without_validation(root);
+    let looks = check_required(&document)?;
+    let instancing = Instancing::read(&document, text).map_err(|e| not_gltf(&e))?;
+    let buffers = Buffers::load(&document, binary, path)?;
     let mut allowance = Expansion::for_input(length.max(buffers.bytes()) as u64);
-    let mut soup = scene::read(&root, &instancing, &buffers, &mut allowance, path)?;
+    let mut soup = scene::read(&document, &instancing, &buffers, &mut allowance, path)?;
     soup.warnings.extend(looks);
-    soup.finish(format, Some(unit(&root)))
+    soup.finish(format, Some(unit(&document, text)))
 }
 
 /// The version that a document states.
@@ -105,58 +108,67 @@ struct StatedAsset {
 }
 
 /// Refuses documents of version 1, which are laid out otherwise throughout.
-fn check_version(json: &[u8]) -> Result<(), ReadError> {
+fn check_version(text: &[u8]) -> Result<(), FileError> {
     // What is no JSON at all is told by the reader of the whole.
-    let Ok(stated) = serde_json::from_slice::<Stated>(json) else { return Ok(()) };
+    let Ok(stated) = serde_json::from_slice::<Stated>(text) else { return Ok(()) };
     let version = match stated.asset.and_then(|asset| asset.version) {
         Some(serde_json::Value::String(version)) => format!("version {version}"),
         Some(serde_json::Value::Number(version)) => format!("version {version}"),
         _ => "a document without a version, as version 1.0 has it,".to_owned(),
     };
-    if version.starts_with("version 2") { Ok(()) } else { Err(ReadError::item("asset", other_version(&version))) }
+    if version.starts_with("version 2") { Ok(()) } else { Err(FileError::item("asset", other_version(&version))) }
 }
 
-fn other_version(found: &str) -> ReadProblem {
-    ReadProblem::Unsupported(format!(
+fn other_version(found: &str) -> FileProblem {
+    FileProblem::Unsupported(format!(
         "glTF {found} is not read here, only version 2.0; convert it to glTF 2.0 or GLB, or export it again"
     ))
 }
 
 /// Refuses a document that requires an extension that is not read. Returns a sentence on those that concern looks alone.
-fn check_required(root: &Root) -> Result<Option<String>, ReadError> {
-    let unread = |name: &&String| !READ.contains(&name.as_str());
+fn check_required(document: &Document) -> Result<Option<String>, FileError> {
+    let unread = |name: &&str| !READ.contains(name);
     let of_looks = |name: &str| OF_LOOKS.iter().any(|start| name.starts_with(start));
-    let unread: Vec<&str> = root.extensions_required.iter().filter(unread).map(String::as_str).collect();
+    let unread: Vec<&str> = document.extensions_required().filter(unread).collect();
     if let Some(name) = unread.iter().find(|name| !of_looks(name)) {
         let compressed = name.contains("compression");
         let why = if compressed { "its mesh data is compressed and" } else { "it" };
-        let problem = ReadProblem::Unsupported(format!(
+        let problem = FileProblem::Unsupported(format!(
             "{why} requires the extension {}, which is not read here; export without it",
             super::text::quoted(name.as_bytes())
         ));
-        return Err(ReadError::item("extensionsRequired", problem));
+        return Err(FileError::item("extensionsRequired", problem));
     }
     Ok((!unread.is_empty()).then(|| format!("required extensions on looks left out: {}", unread.join(", "))))
 }
 
-fn not_gltf(error: &gltf_json::Error) -> ReadError {
+fn not_gltf(error: &json::Error) -> FileError {
     let found = error.to_string();
     match error.line() {
-        0 => ReadError::new(ReadProblem::syntax("glTF in JSON", found)),
-        line => ReadError::line(line, ReadProblem::syntax("glTF in JSON", found)),
+        0 => FileError::new(FileProblem::syntax("glTF in JSON", found)),
+        line => FileError::line(line, FileProblem::syntax("glTF in JSON", found)),
     }
 }
 
 /// The note that the writer of earlier versions left in `asset.extras`, with the numbers in that unit.
+#[derive(serde::Deserialize)]
+struct Noted {
+    asset: NotedAsset,
+}
+
+#[derive(serde::Deserialize)]
+struct NotedAsset {
+    extras: Note,
+}
+
 #[derive(serde::Deserialize)]
 struct Note {
     unit: String,
 }
 
 /// Metres, as the specification says, unless an earlier version of this program has noted otherwise.
-fn unit(root: &Root) -> Unit {
-    let own = root.asset.generator.as_deref() == Some(env!("CARGO_PKG_NAME"));
-    let note =
-        root.asset.extras.as_ref().filter(|_| own).and_then(|extras| serde_json::from_str::<Note>(extras.get()).ok());
-    note.and_then(|note| note.unit.parse().ok()).unwrap_or(Unit::Metre)
+fn unit(document: &Document, text: &[u8]) -> Unit {
+    let own = document.as_json().asset.generator.as_deref() == Some(env!("CARGO_PKG_NAME"));
+    let noted = own.then(|| serde_json::from_slice::<Noted>(text).ok()).flatten();
+    noted.and_then(|noted| noted.asset.extras.unit.parse().ok()).unwrap_or(Unit::Metre)
 }

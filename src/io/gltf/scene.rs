@@ -5,15 +5,16 @@ use std::collections::btree_map::Entry;
 use std::path::Path;
 
 use glam::{DMat4, DQuat, DVec3};
-use gltf_json::mesh::{Mesh, Mode, Primitive, Semantic};
-use gltf_json::scene::Node;
-use gltf_json::validation::Checked;
-use gltf_json::{Index, Root};
+use gltf::mesh::Mode;
+use gltf::scene::Transform;
+use gltf::{Accessor, Document, Semantic};
 
-use super::super::error::{ReadError, ReadProblem};
-use super::super::soup::{Expansion, Soup, counted, too_many_vertices};
+use super::super::error::{FileError, FileProblem};
+use super::super::soup::{Expansion, Soup, too_many_vertices};
+use super::super::text::counted;
 use super::accessor;
-use super::buffers::{Buffers, missing};
+use super::buffers::Buffers;
+use super::checked::{self, Part};
 use super::instancing::Instancing;
 use super::material::Tint;
 use super::texture::Looks;
@@ -21,59 +22,50 @@ use super::texture::Looks;
 /// The soup of the default scene, or of the first, or of every node, or of every mesh: whichever
 /// is there.
 pub(super) fn read(
-    root: &Root,
+    document: &Document,
     instancing: &Instancing,
     buffers: &Buffers<'_>,
     allowance: &mut Expansion,
     path: Option<&Path>,
-) -> Result<Soup, ReadError> {
+) -> Result<Soup, FileError> {
     let mut reader = Reader {
-        root,
+        document,
         instancing,
         buffers,
         allowance,
         soup: Soup::new(),
-        used: vec![false; root.meshes.len()],
+        used: vec![false; document.meshes().len()],
         other_primitives: 0,
         points: 0,
-        looks: Looks::new(root, buffers, path),
+        looks: Looks::new(document, buffers, path),
         posed: 0,
     };
-    match tops(root)? {
-        Some(tops) => reader.nodes(tops)?,
-        None => {
-            for mesh in 0..root.meshes.len() {
-                reader.mesh(Index::new(mesh as u32), "", &DMat4::IDENTITY)?;
-            }
-        }
+    match tops(document)? {
+        Some(tops) => reader.nodes(&tops)?,
+        None => (0..document.meshes().len()).try_for_each(|mesh| reader.mesh(mesh, "", &DMat4::IDENTITY))?,
     }
     Ok(reader.finish())
 }
 
-/// The nodes to start from; `None` when the file has no nodes.
-fn tops(root: &Root) -> Result<Option<Vec<Index<Node>>>, ReadError> {
-    if let Some(scene) = root.scene {
-        let problem = || missing(scene.value(), root.scenes.len(), "scenes");
-        let scene = root.get(scene).ok_or_else(|| ReadError::item("scene", problem()))?;
-        return Ok(Some(scene.nodes.clone()));
+/// The numbers of the nodes to start from; `None` when the file has no nodes.
+fn tops(document: &Document) -> Result<Option<Vec<usize>>, FileError> {
+    if let Some(scene) = checked::scene(document)? {
+        return Ok(Some(checked::tops(document, &scene)));
     }
-    if let Some(scene) = root.scenes.first() {
-        return Ok(Some(scene.nodes.clone()));
-    }
-    if root.nodes.is_empty() {
+    let mut is_child = vec![false; document.nodes().len()];
+    if is_child.is_empty() {
         return Ok(None);
     }
-    let mut is_child = vec![false; root.nodes.len()];
-    for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
-        if let Some(flag) = is_child.get_mut(child.value()) {
+    for child in document.nodes().flat_map(|node| checked::children(document, &node)) {
+        if let Some(flag) = is_child.get_mut(child) {
             *flag = true;
         }
     }
-    Ok(Some((0..root.nodes.len()).filter(|&i| !is_child[i]).map(|i| Index::new(i as u32)).collect()))
+    Ok(Some((0..is_child.len()).filter(|&node| !is_child[node]).collect()))
 }
 
 struct Reader<'a, 'b> {
-    root: &'a Root,
+    document: &'a Document,
     instancing: &'a Instancing,
     buffers: &'a Buffers<'a>,
     allowance: &'b mut Expansion,
@@ -95,53 +87,49 @@ struct Shared {
     colours: BTreeMap<usize, Vec<[f32; 4]>>,
 }
 
-impl Reader<'_, '_> {
+impl<'a> Reader<'a, '_> {
     /// Walks the trees under `tops` depth first. A node has one parent at most, so a node met
     /// twice is an error; that also ends cycles.
-    fn nodes(&mut self, tops: Vec<Index<Node>>) -> Result<(), ReadError> {
-        let mut met = vec![false; self.root.nodes.len()];
-        let mut stack: Vec<_> = tops.into_iter().rev().map(|top| (top, DMat4::IDENTITY)).collect();
-        while let Some((index, parent)) = stack.pop() {
-            let i = index.value();
-            let fail = |problem| ReadError::item(format!("nodes[{i}]"), problem);
-            let count = self.root.nodes.len();
-            let node = self.root.get(index).ok_or_else(|| fail(missing(i, count, "nodes")))?;
+    fn nodes(&mut self, tops: &[usize]) -> Result<(), FileError> {
+        let mut met = vec![false; self.document.nodes().len()];
+        let mut stack: Vec<_> = tops.iter().rev().map(|&top| (top, DMat4::IDENTITY)).collect();
+        while let Some((i, parent)) = stack.pop() {
+            let fail = |problem| FileError::item(format!("nodes[{i}]"), problem);
+            let node = checked::node(self.document, i).map_err(fail)?;
             if std::mem::replace(&mut met[i], true) {
-                return Err(fail(ReadProblem::syntax("a tree of nodes", "a node that is reached twice")));
+                return Err(fail(FileProblem::syntax("a tree of nodes", "a node that is reached twice")));
             }
-            let place = parent * local_transform(node);
-            if let Some(mesh) = node.mesh {
-                self.posed += usize::from(node.skin.is_some());
-                let name = node.name.as_deref().unwrap_or_default();
-                match self.instancing.of(i, self.root, self.buffers, self.allowance)? {
+            let place = parent * matrix(node.transform());
+            if let Some((mesh, is_posed)) = checked::mesh_of(self.document, &node) {
+                self.posed += usize::from(is_posed);
+                let name = node.name().unwrap_or_default();
+                match self.instancing.of(i, self.document, self.buffers, self.allowance)? {
                     Some(copies) => copies.places().try_for_each(|copy| self.mesh(mesh, name, &(place * copy)))?,
                     None => self.mesh(mesh, name, &place)?,
                 }
             }
-            stack.extend(node.children.iter().flatten().rev().map(|&child| (child, place)));
+            stack.extend(checked::children(self.document, &node).into_iter().rev().map(|child| (child, place)));
         }
         Ok(())
     }
 
-    fn mesh(&mut self, index: Index<Mesh>, name: &str, place: &DMat4) -> Result<(), ReadError> {
-        let i = index.value();
-        let fail = |problem| ReadError::item(format!("meshes[{i}]"), problem);
-        let mesh = self.root.get(index).ok_or_else(|| fail(missing(i, self.root.meshes.len(), "meshes")))?;
+    fn mesh(&mut self, i: usize, name: &str, place: &DMat4) -> Result<(), FileError> {
+        let fail = |problem| FileError::item(format!("meshes[{i}]"), problem);
+        let mesh = checked::mesh(self.document, i).map_err(fail)?;
         self.used[i] = true;
         // Counted even when there is nothing in it, so that the work is bounded too.
-        self.allowance.spend(1 + mesh.primitives.len() as u64).map_err(fail)?;
-        let name = if name.is_empty() { mesh.name.as_deref().unwrap_or_default() } else { name };
+        self.allowance.spend(1 + mesh.primitives().len() as u64).map_err(fail)?;
+        let name = if name.is_empty() { mesh.name().unwrap_or_default() } else { name };
         self.soup.begin_part(name.as_bytes());
         // Primitives of a mesh often share one accessor: its vertices are taken once.
         let mut shared = Shared::default();
-        for primitive in &mesh.primitives {
-            let Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) = primitive.mode
-            else {
-                self.passed_over(primitive);
+        for part in checked::parts(self.document, &mesh) {
+            let Some(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) = part.mode() else {
+                self.passed_over(&part);
                 continue;
             };
-            self.posed += usize::from(primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()));
-            self.primitive(primitive, mode, place, &mut shared).map_err(|e| match e.place {
+            self.posed += usize::from(part.has_morph_targets());
+            self.primitive(&part, mode, place, &mut shared).map_err(|e| match e.location {
                 Some(_) => e,
                 None => fail(*e.problem),
             })?;
@@ -150,45 +138,40 @@ impl Reader<'_, '_> {
     }
 
     /// Counts a primitive of points or lines.
-    fn passed_over(&mut self, primitive: &Primitive) {
-        match (primitive.mode, primitive.attributes.get(&Checked::Valid(Semantic::Positions))) {
-            (Checked::Valid(Mode::Points), Some(&positions)) => {
-                self.points += 1;
-                self.soup.points = self.soup.points.saturating_add(accessor::count(self.root, positions));
-            }
-            _ => self.other_primitives += 1,
+    fn passed_over(&mut self, part: &Part<'_>) {
+        if part.mode() == Some(Mode::Points) && part.has(Semantic::Positions) {
+            let count = part.attribute(Semantic::Positions).ok().flatten().map_or(0, |positions| positions.count());
+            self.points += 1;
+            self.soup.points = self.soup.points.saturating_add(count);
+        } else {
+            self.other_primitives += 1;
         }
     }
 
-    fn primitive(
-        &mut self,
-        primitive: &Primitive,
-        mode: Mode,
-        place: &DMat4,
-        shared: &mut Shared,
-    ) -> Result<(), ReadError> {
-        let Some(&positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
+    fn primitive(&mut self, part: &Part<'a>, mode: Mode, place: &DMat4, shared: &mut Shared) -> Result<(), FileError> {
+        let Some(positions) = part.attribute(Semantic::Positions)? else {
             self.other_primitives += 1;
             return Ok(());
         };
-        let (first, count) = match shared.vertices.get(&positions.value()) {
+        let (first, count) = match shared.vertices.get(&positions.index()) {
             Some(&vertices) => vertices,
             None => {
-                let vertices = self.vertices(positions, place)?;
-                shared.vertices.insert(positions.value(), vertices);
+                let vertices = self.vertices(&positions, place)?;
+                shared.vertices.insert(positions.index(), vertices);
                 vertices
             }
         };
-        let indices = match primitive.indices {
-            Some(indices) => accessor::indices(self.root, self.buffers, indices, self.allowance)?,
+        let order = part.indices()?;
+        let indices = match &order {
+            Some(order) => accessor::indices(self.document, self.buffers, order, self.allowance)?,
             None => {
                 self.allowance.spend(count as u64)?;
                 (0..count as u32).collect()
             }
         };
         if let Some(&index) = indices.iter().find(|&&v| v as usize >= count) {
-            let item = primitive.indices.map_or(0, |indices| indices.value());
-            return Err(ReadError::item(format!("accessors[{item}]"), ReadProblem::vertex(i64::from(index), count)));
+            let item = order.map_or(0, |order| order.index());
+            return Err(FileError::item(format!("accessors[{item}]"), FileProblem::vertex(i64::from(index), count)));
         }
         let corners: Vec<u32> = indices.into_iter().map(|v| v + first).collect();
         let start = self.soup.triangles.len();
@@ -202,21 +185,22 @@ impl Reader<'_, '_> {
         if place.determinant() < 0.0 {
             self.soup.triangles[start..].iter_mut().for_each(|t| t.swap(1, 2));
         }
-        self.paint(primitive, start, first, shared)
+        self.paint(part, start, first, shared)
     }
 
     /// Colours the triangles from number `start` on, whose vertices are counted from `first`.
-    fn paint(&mut self, primitive: &Primitive, start: usize, first: u32, shared: &mut Shared) -> Result<(), ReadError> {
-        let mut tint = Tint::of(self.root, primitive)?;
+    fn paint(&mut self, part: &Part<'a>, start: usize, first: u32, shared: &mut Shared) -> Result<(), FileError> {
+        let mut tint = part.material()?.map_or_else(Tint::plain, |material| Tint::of(self.document, &material));
         if self.looks.keeps_colours {
             tint = Tint::plain();
         }
         if self.looks.is_textured {
-            self.looks.hang(primitive, (start, first), &mut self.soup, self.allowance);
+            self.looks.hang(part, (start, first), &mut self.soup, self.allowance);
         }
+        let vertices = part.attribute(Semantic::Colors(0))?;
         let (soup, odd) = (&mut self.soup, &mut 0);
         let triangles = &soup.triangles[start..];
-        let Some(&index) = primitive.attributes.get(&Checked::Valid(Semantic::Colors(0))) else {
+        let Some(vertices) = vertices else {
             if !tint.is_plain() {
                 let colour = tint.applied_to([1.0; 4], odd);
                 soup.colours.paint(start, triangles.iter().map(|_| [colour; 3]));
@@ -224,14 +208,16 @@ impl Reader<'_, '_> {
             }
             return Ok(());
         };
-        let colours = match shared.colours.entry(index.value()) {
+        let colours = match shared.colours.entry(vertices.index()) {
             Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(new) => new.insert(accessor::colours(self.root, self.buffers, index, self.allowance)?),
+            Entry::Vacant(new) => {
+                new.insert(accessor::colours(self.document, self.buffers, &vertices, self.allowance)?)
+            }
         };
         if let Some(v) = triangles.iter().flatten().map(|v| v - first).find(|&v| v as usize >= colours.len()) {
             let expected = format!("a colour for vertex {v}");
-            let problem = ReadProblem::truncated(expected, format!("there are {}", counted(colours.len(), "colour")));
-            return Err(ReadError::item(format!("accessors[{}]", index.value()), problem));
+            let problem = FileProblem::truncated(expected, format!("there are {}", counted(colours.len(), "colour")));
+            return Err(FileError::item(format!("accessors[{}]", vertices.index()), problem));
         }
         let corners = |t: &[u32; 3]| t.map(|v| tint.applied_to(colours[(v - first) as usize], odd));
         soup.colours.paint(start, triangles.iter().map(corners));
@@ -240,8 +226,8 @@ impl Reader<'_, '_> {
     }
 
     /// The transformed vertices of an accessor: the number of the first and how many.
-    fn vertices(&mut self, index: Index<gltf_json::Accessor>, place: &DMat4) -> Result<(u32, usize), ReadError> {
-        let points = accessor::positions(self.root, self.buffers, index, self.allowance)?;
+    fn vertices(&mut self, accessor: &Accessor<'_>, place: &DMat4) -> Result<(u32, usize), FileError> {
+        let points = accessor::positions(self.document, self.buffers, accessor, self.allowance)?;
         let first = self.soup.positions.len();
         if first + points.len() > u32::MAX as usize {
             return Err(too_many_vertices());
@@ -278,17 +264,17 @@ fn as_written(scale: f32) -> f64 {
     scale.to_string().parse().unwrap_or_else(|_| f64::from(scale))
 }
 
-fn local_transform(node: &Node) -> DMat4 {
-    if let Some(matrix) = &node.matrix {
-        return DMat4::from_cols_array(&matrix.map(f64::from));
-    }
-    let vector = |v: [f32; 3]| DVec3::from(v.map(f64::from));
-    let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
+fn matrix(transform: Transform) -> DMat4 {
+    let (translation, rotation, scale) = match transform {
+        Transform::Matrix { matrix } => return DMat4::from_cols_array_2d(&matrix.map(|column| column.map(f64::from))),
+        Transform::Decomposed { translation, rotation, scale } => (translation, rotation, scale),
+    };
+    let rotation = DQuat::from_array(rotation.map(f64::from));
     // A quaternion is stored in 24 bits: made a unit again, the transform keeps lengths.
     let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY };
     DMat4::from_scale_rotation_translation(
-        node.scale.map_or(DVec3::ONE, |scale| DVec3::from(scale.map(as_written))),
+        DVec3::from(scale.map(as_written)),
         rotation,
-        node.translation.map_or(DVec3::ZERO, vector),
+        DVec3::from(translation.map(f64::from)),
     )
 }

@@ -4,21 +4,21 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use gltf_json::material::Material;
-use gltf_json::mesh::{Primitive, Semantic};
-use gltf_json::validation::Checked;
-use gltf_json::{Index, Root};
+use gltf::{Accessor, Document, Material, Semantic};
 
-use super::super::soup::{Expansion, Soup, counted};
+use super::super::error::FileProblem;
+use super::super::soup::{Expansion, Soup};
+use super::super::text::counted;
 use super::super::texture::Gallery;
 use super::accessor;
 use super::buffers::{Buffers, decoded_data, percent_decoded};
+use super::checked::{self, Part, Source};
 use super::material::Tint;
 use crate::io;
 
 /// What is read of textures, once for each material, accessor and image.
 pub(super) struct Looks<'a> {
-    root: &'a Root,
+    document: &'a Document,
     buffers: &'a Buffers<'a>,
     gallery: Gallery<'a>,
     /// Whether the document has textures or coordinates at all; else its materials are colours.
@@ -35,16 +35,13 @@ pub(super) struct Looks<'a> {
 }
 
 impl<'a> Looks<'a> {
-    pub(super) fn new(root: &'a Root, buffers: &'a Buffers<'a>, path: Option<&'a Path>) -> Self {
-        let with_image = |m: &Material| m.pbr_metallic_roughness.base_color_texture.is_some();
-        let primitives = || root.meshes.iter().flat_map(|mesh| &mesh.primitives);
-        let has = |semantic: Semantic| {
-            let semantic = Checked::Valid(semantic);
-            primitives().any(|primitive| primitive.attributes.contains_key(&semantic))
-        };
-        let is_textured = root.materials.iter().any(with_image) || has(Semantic::TexCoords(0));
+    pub(super) fn new(document: &'a Document, buffers: &'a Buffers<'a>, path: Option<&'a Path>) -> Self {
+        let parts = || document.meshes().flat_map(|mesh| checked::parts(document, &mesh));
+        let has = |semantic: Semantic| parts().any(|part| part.has(semantic.clone()));
+        let is_textured = document.materials().any(|material| checked::base_texture(document, &material).is_some())
+            || has(Semantic::TexCoords(0));
         Self {
-            root,
+            document,
             buffers,
             gallery: Gallery::beside(path),
             is_textured,
@@ -59,33 +56,37 @@ impl<'a> Looks<'a> {
     /// Gives the triangles from number `start` on, whose vertices are counted from `first`, their material and coordinates.
     pub(super) fn hang(
         &mut self,
-        primitive: &Primitive,
+        part: &Part<'a>,
         (start, first): (usize, u32),
         soup: &mut Soup,
         allowance: &mut Expansion,
     ) {
-        let material = primitive.material.and_then(|index| Some((index.value(), self.root.get(index)?)));
-        if let Some((number, material)) = material
+        let material = part.material().ok().flatten();
+        if let Some(material) = &material
             && start < soup.triangles.len()
+            && let Some(number) = self.material(material, soup)
         {
-            let number = self.material(number, material, soup);
             soup.texture.cover(start..soup.triangles.len(), number);
         }
-        let image = material.and_then(|(_, m)| m.pbr_metallic_roughness.base_color_texture.as_ref());
-        let set = image.map_or(0, |image| image.tex_coord);
-        let Some(&index) = primitive.attributes.get(&Checked::Valid(Semantic::TexCoords(set))) else { return };
-        let (root, buffers, warnings) = (self.root, self.buffers, &mut self.warnings);
-        let read = self.coordinates.entry(index.value()).or_insert_with(|| {
-            let read = accessor::coordinates(root, buffers, index, allowance);
-            read.map_err(|error| warnings.push(left_out(index, &error.problem.to_string()))).ok()
+        let image = material.and_then(|material| checked::base_texture(self.document, &material));
+        let set = image.map_or(0, |(_, set)| set);
+        let (document, buffers, warnings) = (self.document, self.buffers, &mut self.warnings);
+        let accessor = match part.attribute(Semantic::TexCoords(set)) {
+            Ok(Some(accessor)) => accessor,
+            Ok(None) => return,
+            Err(problem) => return self.absent(&problem),
+        };
+        let read = self.coordinates.entry(accessor.index()).or_insert_with(|| {
+            let read = accessor::coordinates(document, buffers, &accessor, allowance);
+            read.map_err(|error| warnings.push(left_out(&accessor, &error.problem.to_string()))).ok()
         });
         let Some(coordinates) = read else { return };
         let most = soup.triangles[start..].iter().flatten().map(|v| (v - first) as usize).max();
         if most.is_some_and(|most| most >= coordinates.len()) {
             let there = counted(coordinates.len(), "value");
             // Said once, however often it is placed.
-            self.coordinates.insert(index.value(), None);
-            self.warnings.push(left_out(index, &format!("there are {there} for more vertices")));
+            self.coordinates.insert(accessor.index(), None);
+            self.warnings.push(left_out(&accessor, &format!("there are {there} for more vertices")));
             return;
         }
         for triangle in start..soup.triangles.len() {
@@ -94,52 +95,59 @@ impl<'a> Looks<'a> {
         }
     }
 
-    /// Our number of a material of the document.
-    fn material(&mut self, number: usize, material: &Material, soup: &mut Soup) -> u32 {
-        if let Some(&known) = self.numbers.get(&number) {
-            return known;
+    /// Says, once, that the accessor of coordinates is not there.
+    fn absent(&mut self, problem: &FileProblem) {
+        if let FileProblem::IndexOutOfRange { index, .. } = problem
+            && self.coordinates.insert(*index as usize, None).is_none()
+        {
+            self.warnings.push(format!("the texture coordinates of accessors[{index}] left out: {problem}"));
         }
-        let pbr = &material.pbr_metallic_roughness;
-        let tint = Tint::of_material(material);
-        let others = [
-            pbr.metallic_roughness_texture.is_some(),
-            material.normal_texture.is_some(),
-            material.occlusion_texture.is_some(),
-            material.emissive_texture.is_some(),
-        ];
-        self.others += others.into_iter().filter(|there| *there).count();
-        let image = pbr.base_color_texture.as_ref().and_then(|texture| self.image(texture.index));
+    }
+
+    /// Our number of a material of the document; `None` for the one that stands for no material.
+    fn material(&mut self, material: &Material<'a>, soup: &mut Soup) -> Option<u32> {
+        let number = material.index()?;
+        if let Some(&known) = self.numbers.get(&number) {
+            return Some(known);
+        }
+        self.others += checked::other_textures(self.document, material);
+        let tint = Tint::of(self.document, material);
+        let image = checked::base_texture(self.document, material).and_then(|(texture, _)| self.image(texture));
         let colour = (self.keeps_colours && !tint.is_plain()).then(|| tint.applied_to([1.0; 4], &mut 0));
         let own = soup.texture.materials.len() as u32;
-        let name = material.name.clone().unwrap_or_default();
+        let name = material.name().unwrap_or_default().to_owned();
         soup.texture.materials.push(io::Material { name, colour, image });
         self.numbers.insert(number, own);
-        own
+        Some(own)
     }
 
     /// Our number of the image of a texture of the document.
-    fn image(&mut self, texture: Index<gltf_json::Texture>) -> Option<u32> {
-        let (root, buffers) = (self.root, self.buffers);
-        let found = root.get(texture).and_then(|texture| Some((texture.source.value(), root.get(texture.source)?)));
-        let Some((number, image)) = found else {
-            self.warnings.push(format!("the image of textures[{}] is not there; left out", texture.value()));
+    fn image(&mut self, texture: usize) -> Option<u32> {
+        let (document, buffers) = (self.document, self.buffers);
+        let Some(image) = checked::image(document, texture) else {
+            self.warnings.push(format!("the image of textures[{texture}] is not there; left out"));
             return None;
         };
-        if let Some(uri) = image.uri.as_deref().filter(|uri| !uri.starts_with("data:")) {
+        let source = checked::source(document, &image);
+        if let Some(Source::Uri(uri)) = &source
+            && !uri.starts_with("data:")
+        {
             // Names of files have percent signs in addresses.
             let name = String::from_utf8_lossy(&percent_decoded(uri)).into_owned();
             return Some(self.gallery.image(&name));
         }
-        let fetch = |_: &mut Gallery<'_>| match (&image.uri, image.buffer_view) {
-            (Some(uri), _) => {
+        let fetch = |_: &mut Gallery<'_>| match source {
+            Some(Source::Uri(uri)) => {
                 decoded_data(uri.trim_start_matches("data:")).map_err(|problem| problem.to_string()).map(Arc::from)
             }
-            (None, Some(view)) => {
-                buffers.view(root, view).map(|(bytes, _)| Arc::from(bytes)).map_err(|e| e.problem.to_string())
+            Some(Source::View(view)) => {
+                buffers.view(document, view).map(|(bytes, _)| Arc::from(bytes)).map_err(|e| e.problem.to_string())
             }
-            (None, None) => Err("it has neither bytes nor a file".into()),
+            None => Err("it has neither bytes nor a file".into()),
         };
-        let name = image.name.clone().filter(|name| !name.is_empty()).unwrap_or_else(|| format!("image_{number}"));
+        let number = image.index();
+        let name =
+            image.name().filter(|name| !name.is_empty()).map_or_else(|| format!("image_{number}"), str::to_owned);
         // No file has this name.
         Some(self.gallery.own(format!("\0{number}"), fetch, &name))
     }
@@ -149,7 +157,7 @@ impl<'a> Looks<'a> {
         if !self.is_textured {
             return;
         }
-        if self.root.extensions_used.iter().any(|name| name == "KHR_texture_transform") {
+        if self.document.extensions_used().any(|name| name == "KHR_texture_transform") {
             self.warnings.push("textures that KHR_texture_transform shifts or scales taken as they are".into());
         }
         if self.others > 0 {
@@ -164,6 +172,6 @@ impl<'a> Looks<'a> {
     }
 }
 
-fn left_out(index: Index<gltf_json::Accessor>, reason: &str) -> String {
-    format!("the texture coordinates of accessors[{}] left out: {reason}", index.value())
+fn left_out(accessor: &Accessor<'_>, reason: &str) -> String {
+    format!("the texture coordinates of accessors[{}] left out: {reason}", accessor.index())
 }

@@ -5,7 +5,7 @@ use std::io::Write;
 
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
-use gltf_json::buffer::{ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER};
+use gltf::json::buffer::{ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER};
 use serde_json::{Value, json};
 
 use super::super::colour::{Rgba, linear_from_srgb};
@@ -15,9 +15,9 @@ use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC};
 use crate::io::{Format, Material, Paint, Unit};
 use crate::mesh::{Bounds, TriMesh};
 
-const FLOAT: u32 = gltf_json::accessor::FLOAT;
-const UNSIGNED_INT: u32 = gltf_json::accessor::UNSIGNED_INT;
-const UNSIGNED_SHORT: u32 = gltf_json::accessor::UNSIGNED_SHORT;
+const FLOAT: u32 = gltf::json::accessor::FLOAT;
+const UNSIGNED_INT: u32 = gltf::json::accessor::UNSIGNED_INT;
+const UNSIGNED_SHORT: u32 = gltf::json::accessor::UNSIGNED_SHORT;
 
 /// The lists of a document that point to one another.
 struct Lists {

@@ -2,8 +2,10 @@
 
 use glam::{DVec3, IVec3};
 
-use super::{GridFormat, GridReadProblem};
+use super::GridFormat;
 use crate::io::Unit;
+use crate::io::error::FileProblem;
+use crate::lattice::Lattice;
 
 /// Voxels along one side of a block.
 pub const BLOCK_SIDE: i32 = 8;
@@ -47,9 +49,9 @@ pub enum GridValues {
 #[derive(Debug, Clone, PartialEq)]
 pub struct SparseValues {
     /// Sorted by the corner's z, then y, then x; no two at one place.
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<GridBlock>,
     /// Boxes of one value that is not the background, in an order of their own; none overlaps a block.
-    pub tiles: Vec<Tile>,
+    pub tiles: Vec<GridTile>,
     /// The value of all other voxels.
     pub background: f32,
     /// Tiles are at multiples of their side when this is added to them.
@@ -58,7 +60,7 @@ pub struct SparseValues {
 
 /// 8³ voxels.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Block {
+pub struct GridBlock {
     /// Its first voxel; a multiple of 8 along each axis.
     pub corner: IVec3,
     /// The values.
@@ -67,7 +69,7 @@ pub struct Block {
 
 /// A box of voxels of one value.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tile {
+pub struct GridTile {
     /// Its first voxel; a multiple of 8 along each axis.
     pub corner: IVec3,
     /// Voxels along x and y: 8, 128 or 4096.
@@ -84,7 +86,7 @@ impl GridValues {
         let bytes = match self {
             Self::Dense(values) => size_of_val(values.as_slice()),
             Self::Sparse(values) => {
-                let block = size_of::<Block>() + size_of::<BlockValues>();
+                let block = size_of::<GridBlock>() + size_of::<BlockValues>();
                 values.blocks.len() * block + size_of_val(values.tiles.as_slice())
             }
         };
@@ -93,6 +95,11 @@ impl GridValues {
 }
 
 impl GridFile {
+    /// Where the voxels lie.
+    pub fn lattice(&self) -> Lattice {
+        Lattice { origin: self.origin, h: self.spacing, dims: IVec3::from(self.dims.map(|count| count as i32)) }
+    }
+
     /// The value at a voxel, model units; `None` outside the lattice.
     pub fn at(&self, voxel: IVec3) -> Option<f32> {
         let [x, y, z] = voxel.to_array().map(|k| usize::try_from(k).unwrap_or(usize::MAX));
@@ -158,12 +165,12 @@ impl SparseValues {
     /// Smallest corner, and the corner after the last voxel, of all blocks and tiles.
     pub(super) fn bounds(&self) -> Option<[IVec3; 2]> {
         let blocks = self.blocks.iter().map(|block| [block.corner, block.corner + BLOCK_SIDE]);
-        let tiles = self.tiles.iter().map(Tile::ends);
+        let tiles = self.tiles.iter().map(GridTile::ends);
         blocks.chain(tiles).reduce(|[a, b], [low, high]| [a.min(low), b.max(high)])
     }
 }
 
-impl Tile {
+impl GridTile {
     fn ends(&self) -> [IVec3; 2] {
         [self.corner, self.corner + IVec3::new(self.side, self.side, self.length)]
     }
@@ -173,40 +180,40 @@ fn block_order(corner: IVec3) -> (i32, i32, i32) {
     (corner.z, corner.y, corner.x)
 }
 
-fn tile_order(tile: &Tile) -> (i32, i32, i32, i32) {
+fn tile_order(tile: &GridTile) -> (i32, i32, i32, i32) {
     (tile.side, tile.corner.x, tile.corner.y, tile.corner.z)
 }
 
 /// Checks that all values of a dense lattice are finite.
-pub(super) fn all_finite(values: &[f32], dims: [usize; 3]) -> Result<(), GridReadProblem> {
+pub(super) fn all_finite(values: &[f32], dims: [usize; 3]) -> Result<(), FileProblem> {
     let Some(n) = values.iter().position(|value| !value.is_finite()) else { return Ok(()) };
     let [x, y] = [dims[0].max(1), dims[1].max(1)];
     let voxel = [n % x, n / x % y, n / (x * y)].map(|k| k as i64);
-    Err(GridReadProblem::NotFinite { voxel, value: values[n] })
+    Err(FileProblem::NotFiniteVoxel { voxel, value: values[n] })
 }
 
 /// The one spacing of all axes. Files round their numbers, so a few units in the seventh digit do not count.
-pub(super) fn one_spacing(spacing: [f64; 3]) -> Result<f64, GridReadProblem> {
+pub(super) fn one_spacing(spacing: [f64; 3]) -> Result<f64, FileProblem> {
     const ROUNDING: f64 = 2e-7;
     let h = spacing[0];
     if !spacing.iter().all(|s| s.is_finite() && *s > 0.0) {
         let found = format!("{} {} {}", spacing[0], spacing[1], spacing[2]);
-        return Err(GridReadProblem::syntax("a spacing above zero along each axis", found));
+        return Err(FileProblem::syntax("a spacing above zero along each axis", found));
     }
     match spacing.iter().all(|s| (s - h).abs() <= ROUNDING * h) {
         true => Ok(h),
-        false => Err(GridReadProblem::Anisotropic(spacing)),
+        false => Err(FileProblem::Anisotropic(spacing)),
     }
 }
 
 /// Spacing from the three axes of the lattice, each the step from one voxel to the next.
-pub(super) fn spacing_of_axes(axes: [[f64; 3]; 3]) -> Result<f64, GridReadProblem> {
+pub(super) fn spacing_of_axes(axes: [[f64; 3]; 3]) -> Result<f64, FileProblem> {
     let largest = axes.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
     let straight = (0..3).all(|k| (0..3).all(|j| j == k || axes[k][j].abs() <= 1e-7 * largest));
     let forward = (0..3).all(|k| axes[k][k] > 0.0);
     if !(straight && forward) {
         let words = axes.map(|[x, y, z]| format!("({x}, {y}, {z})"));
-        return Err(GridReadProblem::Turned(words.join(" ")));
+        return Err(FileProblem::Turned(words.join(" ")));
     }
     one_spacing([axes[0][0], axes[1][1], axes[2][2]])
 }
@@ -312,8 +319,8 @@ mod tests {
     /// Blocks and tiles that reach beyond the lattice on both sides.
     fn sparse() -> GridFile {
         let values = std::array::from_fn(|n| n as f32 - 200.0);
-        let block = |corner: [i32; 3]| Block { corner: IVec3::from(corner), values: Box::new(values) };
-        let tile = |corner: [i32; 3], length, value| Tile { corner: IVec3::from(corner), side: 8, length, value };
+        let block = |corner: [i32; 3]| GridBlock { corner: IVec3::from(corner), values: Box::new(values) };
+        let tile = |corner: [i32; 3], length, value| GridTile { corner: IVec3::from(corner), side: 8, length, value };
         let mut sparse = SparseValues {
             blocks: vec![block([8, 8, 8]), block([0, 0, 0]), block([16, 0, 0])],
             tiles: vec![tile([8, 0, 0], 16, -7.0), tile([0, 16, 8], 8, 9.5)],

@@ -5,7 +5,8 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
-use super::vdb;
+/// The first bytes of every OpenVDB file.
+pub(super) const VDB_MAGIC: [u8; 8] = *b" BDV\0\0\0\0";
 
 /// A file format for lattices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -35,8 +36,8 @@ impl GridFormat {
     }
 
     /// The format that the extension of `path` names, in any case of letters.
-    pub fn from_path(path: &Path) -> Option<Self> {
-        path.extension().and_then(OsStr::to_str)?.parse().ok()
+    pub fn from_path(path: impl AsRef<Path>) -> Option<Self> {
+        path.as_ref().extension().and_then(OsStr::to_str)?.parse().ok()
     }
 
     /// The format that `bytes` begin as. Every format here has a beginning of its own, which no mesh file has.
@@ -45,7 +46,7 @@ impl GridFormat {
             Some(Self::Nrrd)
         } else if bytes.starts_with(b"\x93NUMPY") {
             Some(Self::Npy)
-        } else if bytes.starts_with(&vdb::MAGIC) {
+        } else if bytes.starts_with(&VDB_MAGIC) {
             Some(Self::Vdb)
         } else {
             looks_like_vtk(bytes).then_some(Self::Vti)

@@ -1,7 +1,6 @@
 //! Files of numbers on a regular lattice: written plane by plane or block by block, so that the whole need not be in
 //! memory, and read into a [`GridFile`].
 
-mod error;
 mod file;
 mod format;
 mod npy;
@@ -16,14 +15,16 @@ use std::path::Path;
 
 use glam::{DVec3, IVec3};
 
-pub use error::{GridReadError, GridReadProblem};
-pub use file::{BLOCK_SIDE, BLOCK_VOXELS, Block, BlockValues, GridFile, GridMeasures, GridValues, SparseValues, Tile};
+pub use file::{
+    BLOCK_SIDE, BLOCK_VOXELS, BlockValues, GridBlock, GridFile, GridMeasures, GridTile, GridValues, SparseValues,
+};
 use file::{all_finite, one_spacing, spacing_of_axes};
 pub use format::{GridFormat, UnknownGridFormat};
 pub use read::{read_grid, read_grid_bytes, read_grid_within};
 
+use super::error::{Wanted, WriteError, WriteProblem};
 use super::save::save_bytes;
-use super::{Unit, WriteError};
+use super::unit::Unit;
 
 /// A signed distance at the points of a regular lattice.
 pub struct DistanceSamples<'a> {
@@ -67,11 +68,48 @@ pub fn encode_grid(samples: &DistanceSamples<'_>, format: GridFormat, out: &mut 
     }
 }
 
-/// Writes the samples to `path`, whole or not at all: see [`save_bytes`].
+/// Writes the samples to `path` in the format that its extension names, whole or not at all: see [`save_bytes`].
+///
+/// ```
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("plane.nrrd");
+/// # let path = path.to_str().expect("a plain name");
+/// use glam::{DVec3, IVec3};
+/// use meshwright::io::{DistanceSamples, read_grid, write_grid};
+///
+/// // The distance to the plane z = 0.5 at 3 x 2 x 2 points.
+/// let samples = DistanceSamples {
+///     origin: DVec3::ZERO,
+///     spacing: 1.0,
+///     dims: [3, 2, 2],
+///     unit: None,
+///     band: None,
+///     plane: &|z, values| values.extend([z as f32 - 0.5; 6]),
+///     blocks: None,
+/// };
+/// write_grid(path, &samples)?; // "plane.nrrd"
+/// assert_eq!(read_grid(path)?.at(IVec3::new(2, 1, 1)), Some(0.5));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
-/// See [`encode_grid`].
-pub fn write_grid(path: &Path, samples: &DistanceSamples<'_>, format: GridFormat) -> Result<(), WriteError> {
+/// [`WriteProblem::UnknownFormat`] where the extension names no format of lattices, and [`WriteProblem::Io`] for what
+/// [`encode_grid`] returns or the operating system refuses.
+pub fn write_grid(path: impl AsRef<Path>, samples: &DistanceSamples<'_>) -> Result<(), WriteError> {
+    let path = path.as_ref();
+    let unknown = || WriteError::from(WriteProblem::UnknownFormat { wanted: Wanted::Grid }).in_file(path);
+    write_grid_as(path, samples, GridFormat::from_path(path).ok_or_else(unknown)?)
+}
+
+/// [`write_grid`] in a format that the name need not tell.
+///
+/// # Errors
+/// As [`write_grid`], but the name of the file does not matter.
+pub fn write_grid_as(
+    path: impl AsRef<Path>,
+    samples: &DistanceSamples<'_>,
+    format: GridFormat,
+) -> Result<(), WriteError> {
     save_bytes(path, |out| encode_grid(samples, format, out))
 }
 

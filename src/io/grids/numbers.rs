@@ -2,7 +2,8 @@
 
 use std::io::{self, Read};
 
-use super::error::{GridReadProblem, shown};
+use crate::io::error::FileProblem;
+use crate::io::text::quoted;
 
 /// Bytes of memory that the values of any file may take.
 const ALWAYS_ALLOWED: usize = 256 << 20;
@@ -21,20 +22,18 @@ pub(super) struct Cap {
 impl Cap {
     /// Refuses values of so many `bytes`, by what the file's length justifies; and by what is allowed those, the file, and
     /// the bytes `besides` that are held while it is read.
-    pub(super) fn check(self, bytes: usize, besides: usize) -> Result<(), GridReadProblem> {
+    pub(super) fn check(self, bytes: usize, besides: usize) -> Result<(), FileProblem> {
         let limit = ALWAYS_ALLOWED.max(self.length.saturating_mul(LARGEST_RATIO));
         let needed = self.length.saturating_add(bytes).saturating_add(besides) as u64;
         match self.allowed {
-            Some(allowed) if needed > allowed => Err(GridReadProblem::Memory { needed, allowed }),
-            _ if bytes > limit => {
-                Err(GridReadProblem::TooLarge { what: "the bytes of its values", limit: limit as u64 })
-            }
+            Some(allowed) if needed > allowed => Err(FileProblem::Memory { needed, allowed }),
+            _ if bytes > limit => Err(FileProblem::TooLarge { what: "the bytes of its values", limit: limit as u64 }),
             _ => Ok(()),
         }
     }
 
     /// The same for `count` values.
-    pub(super) fn check_values(self, count: usize, besides: usize) -> Result<(), GridReadProblem> {
+    pub(super) fn check_values(self, count: usize, besides: usize) -> Result<(), FileProblem> {
         self.check(count.saturating_mul(size_of::<f32>()), besides)
     }
 }
@@ -114,39 +113,36 @@ pub(super) fn count(dims: [usize; 3]) -> Option<usize> {
 }
 
 /// `count` numbers written as text, separated by blanks.
-pub(super) fn from_text(text: &[u8], count: usize) -> Result<Vec<f32>, GridReadProblem> {
+pub(super) fn from_text(text: &[u8], count: usize) -> Result<Vec<f32>, FileProblem> {
     // A number takes at least a digit and a blank.
     if count > text.len().div_ceil(2) {
-        return Err(GridReadProblem::truncated(
-            format!("{count} numbers"),
-            format!("{} characters are there", text.len()),
-        ));
+        return Err(FileProblem::truncated(format!("{count} numbers"), format!("{} characters are there", text.len())));
     }
     let mut values = Vec::with_capacity(count);
     for word in text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
         let number = std::str::from_utf8(word).ok().and_then(|word| word.parse::<f64>().ok());
-        let number = number.ok_or_else(|| GridReadProblem::syntax("a number", shown(word)))?;
+        let number = number.ok_or_else(|| FileProblem::syntax("a number", quoted(word)))?;
         if values.len() == count {
-            return Err(GridReadProblem::syntax(format!("{count} numbers"), "more"));
+            return Err(FileProblem::syntax(format!("{count} numbers"), "more"));
         }
         values.push(number as f32);
     }
     match values.len() == count {
         true => Ok(values),
-        false => Err(GridReadProblem::truncated(format!("{count} numbers"), format!("there are {}", values.len()))),
+        false => Err(FileProblem::truncated(format!("{count} numbers"), format!("there are {}", values.len()))),
     }
 }
 
 /// The first `wanted` bytes that `packed` unpacks into. Memory grows with what is really there.
-pub(super) fn unpack(packed: impl Read, wanted: usize) -> Result<Vec<u8>, GridReadProblem> {
+pub(super) fn unpack(packed: impl Read, wanted: usize) -> Result<Vec<u8>, FileProblem> {
     let mut bytes = Vec::new();
     let read = packed.take(wanted as u64).read_to_end(&mut bytes);
-    read.map_err(|error| GridReadProblem::syntax("compressed numbers", error.to_string()))?;
+    read.map_err(|error| FileProblem::syntax("compressed numbers", error.to_string()))?;
     match bytes.len() == wanted {
         true => Ok(bytes),
         false => {
             let found = format!("there are {}", bytes.len());
-            Err(GridReadProblem::truncated(format!("{wanted} bytes after unpacking"), found))
+            Err(FileProblem::truncated(format!("{wanted} bytes after unpacking"), found))
         }
     }
 }
@@ -158,12 +154,11 @@ pub(super) fn unpack_numbers(
     count: usize,
     decode: impl Fn(&[u8]) -> Vec<f32>,
     width: usize,
-) -> Result<Vec<f32>, GridReadProblem> {
+) -> Result<Vec<f32>, FileProblem> {
     const PIECE: usize = 1 << 13;
-    let broken = |error: io::Error| GridReadProblem::syntax("compressed numbers", error.to_string());
-    let missing = |found: usize| {
-        GridReadProblem::truncated(format!("{count} numbers after unpacking"), format!("there are {found}"))
-    };
+    let broken = |error: io::Error| FileProblem::syntax("compressed numbers", error.to_string());
+    let missing =
+        |found: usize| FileProblem::truncated(format!("{count} numbers after unpacking"), format!("there are {found}"));
     let passed = io::copy(&mut packed.by_ref().take(skipped), &mut io::sink()).map_err(broken)?;
     if passed < skipped {
         return Err(missing(0));

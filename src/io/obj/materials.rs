@@ -1,10 +1,10 @@
-//! Materials and texture coordinates: `vt`, `usemtl`, and the files that `mtllib` names.
+//! Materials and texture coordinates: `vt`, `usemtl`, and the files that `mtllib` names, which `tobj` reads.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::super::soup::{Soup, counted};
-use super::super::text::{Lines, Words, integer, quoted, single};
+use super::super::soup::Soup;
+use super::super::text::{Lines, Words, counted, integer, quoted, single};
 use super::super::texture::{Gallery, Woven};
 use crate::io::Material;
 
@@ -198,43 +198,68 @@ impl Read<'_> {
 
     /// The content of a file of materials. Of what is described twice, the first counts.
     fn library(&mut self, bytes: &[u8], woven: &mut Woven) {
-        let mut current = None;
+        for described in self.described(bytes) {
+            let number = described.name.parse::<u32>().ok().filter(|&number| self.met.insert(number));
+            let Some(material) = number.and_then(|number| woven.materials.get_mut(number as usize)) else { continue };
+            let opacity = described.dissolve.map(|opacity| level(opacity as f32));
+            let red_green_blue = described.diffuse.map(|levels| levels.map(|x| level(x as f32)));
+            if red_green_blue.is_some() || opacity.is_some() {
+                let [red, green, blue] = red_green_blue.unwrap_or([255; 3]);
+                material.colour = Some([red, green, blue, opacity.unwrap_or(255)]);
+            }
+            if let Some(texture) = described.diffuse_texture {
+                let (name, _) = file_of(Words::new(texture.as_bytes()));
+                material.image = Some(self.gallery.image(&String::from_utf8_lossy(name)));
+            }
+        }
+    }
+
+    /// What a file describes of the materials that faces have, in its order, as `tobj` reads it. A single number that is none would
+    /// make `tobj` refuse the whole file, and a colour of two numbers would make it panic. So it gets the statements
+    /// that are sound and that say something of the colour; the others are passed over, or counted. Materials go by their numbers in the mesh
+    /// there, because names need not be UTF-8.
+    fn described(&mut self, bytes: &[u8]) -> Vec<tobj::Material> {
+        let mut sound = Vec::with_capacity(bytes.len().min(1 << 16));
+        // Whether the material is one that faces have and that no file before this one has described.
+        let (mut current, mut begun) = (None, BTreeSet::new());
         for (_, line) in Lines::new(bytes) {
             let mut words = Words::new(line);
             let statement = words.next().unwrap_or_default();
+            let rest = words.rest();
             if statement == b"newmtl" {
-                let number = self.known.get(words.rest()).copied();
-                current = number.filter(|&number| self.met.insert(number));
+                let number = self.known.get(rest).copied();
+                current = number.filter(|number| !self.met.contains(number) && begun.insert(*number));
+            }
+            let Some(number) = current else { continue };
+            let numbers =
+                |count: usize| words.clone().take(count).map(single).filter(|x| x.is_finite()).count() == count;
+            let is_sound = match statement {
+                b"newmtl" => true,
+                b"Kd" => numbers(3),
+                b"d" | b"Tr" => numbers(1),
+                b"map_Kd" => {
+                    let (name, shifted) = file_of(words.clone());
+                    self.shifts += usize::from(shifted);
+                    !name.is_empty()
+                }
+                other => {
+                    self.maps += usize::from(OTHER_MAPS.contains(&other));
+                    false
+                }
+            };
+            if !is_sound {
                 continue;
             }
-            let Some(material) = current.and_then(|number| woven.materials.get_mut(number as usize)) else { continue };
-            match statement {
-                b"Kd" => {
-                    let levels = [(); 3].map(|()| words.next().map_or(f32::NAN, single));
-                    if levels.iter().all(|level| level.is_finite()) {
-                        let alpha = material.colour.map_or(255, |colour| colour[3]);
-                        let [red, green, blue] = levels.map(level);
-                        material.colour = Some([red, green, blue, alpha]);
-                    }
-                }
-                b"d" | b"Tr" => {
-                    let number = words.next().map_or(f32::NAN, single);
-                    let opacity = if statement == b"Tr" { 1.0 - number } else { number };
-                    if opacity.is_finite() {
-                        let colour = material.colour.get_or_insert([255; 4]);
-                        colour[3] = level(opacity);
-                    }
-                }
-                b"map_Kd" => {
-                    let (name, shifted) = file_of(words);
-                    self.shifts += usize::from(shifted);
-                    if !name.is_empty() {
-                        material.image = Some(self.gallery.image(&String::from_utf8_lossy(name)));
-                    }
-                }
-                other => self.maps += usize::from(OTHER_MAPS.contains(&other)),
-            }
+            // `Tr` is one minus `d`, and the later of both counts.
+            let line = match (statement, words.next()) {
+                (b"newmtl", _) => format!("newmtl {number}"),
+                (b"Tr", Some(word)) => format!("d {}", 1.0 - single(word)),
+                _ => format!("{} {}", String::from_utf8_lossy(statement), String::from_utf8_lossy(rest)),
+            };
+            sound.extend_from_slice(line.as_bytes());
+            sound.push(b'\n');
         }
+        tobj::load_mtl_buf(&mut sound.as_slice()).map(|(materials, _)| materials).unwrap_or_default()
     }
 }
 

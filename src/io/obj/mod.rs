@@ -11,15 +11,15 @@ use glam::DVec3;
 
 use self::materials::Looks;
 use super::colour::LEVELS_OF_WHITE;
-use super::error::{ReadError, ReadProblem};
-use super::soup::{Soup, counted, too_many_vertices};
-use super::text::{Lines, Words, integer, number, quoted, quoted_or_end};
+use super::error::{FileError, FileProblem};
+use super::soup::{Soup, too_many_vertices};
+use super::text::{Lines, Words, counted, integer, number, quoted, quoted_or_end};
 use super::{Format, Loaded};
 
 pub(super) use write::write;
 
 /// Reads the file at `path`, beside which its materials and images lie.
-pub(super) fn read(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, ReadError> {
+pub(super) fn read(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, FileError> {
     let mut reader = Reader::default();
     let mut lines = Lines::new(bytes);
     while let Some((first, line)) = lines.next() {
@@ -71,7 +71,7 @@ impl Default for Reader {
 }
 
 impl Reader {
-    fn statement(&mut self, line: &[u8], at: usize) -> Result<(), ReadError> {
+    fn statement(&mut self, line: &[u8], at: usize) -> Result<(), FileError> {
         let mut words = Words::new(line);
         match words.next() {
             Some(b"v") => self.vertex(words, at),
@@ -105,12 +105,12 @@ impl Reader {
     }
 
     /// Three coordinates, and a colour if exactly three numbers follow; anything else after them is passed over.
-    fn vertex(&mut self, mut words: Words<'_>, at: usize) -> Result<(), ReadError> {
+    fn vertex(&mut self, mut words: Words<'_>, at: usize) -> Result<(), FileError> {
         let mut p = DVec3::ZERO;
         for k in 0..3 {
             let word = words.next();
-            let fail = || ReadProblem::syntax("three coordinates after `v`", quoted_or_end(word));
-            p[k] = word.and_then(number).ok_or_else(|| ReadError::line(at, fail()))?;
+            let fail = || FileProblem::syntax("three coordinates after `v`", quoted_or_end(word));
+            p[k] = word.and_then(number).ok_or_else(|| FileError::line(at, fail()))?;
         }
         if self.soup.positions.len() >= u32::MAX as usize {
             return Err(too_many_vertices());
@@ -123,7 +123,7 @@ impl Reader {
         Ok(())
     }
 
-    fn face(&mut self, words: Words<'_>, at: usize) -> Result<(), ReadError> {
+    fn face(&mut self, words: Words<'_>, at: usize) -> Result<(), FileError> {
         self.face.clear();
         self.looks.begin_face();
         let first = self.soup.triangles.len();
@@ -133,7 +133,7 @@ impl Reader {
             if word.starts_with(b"#") {
                 break;
             }
-            let corner = corner(word, count).map_err(|problem| ReadError::line(at, problem))?;
+            let corner = corner(word, count).map_err(|problem| FileError::line(at, problem))?;
             largest = largest.max(corner);
             self.face.push(corner);
             self.looks.corner(word);
@@ -154,13 +154,13 @@ impl Reader {
         Ok(())
     }
 
-    fn finish(mut self, path: Option<&Path>) -> Result<Loaded, ReadError> {
+    fn finish(mut self, path: Option<&Path>) -> Result<Loaded, FileError> {
         let count = self.soup.positions.len();
         if let Some((largest, line)) = self.largest
             && largest as usize >= count
             && !self.soup.triangles.is_empty()
         {
-            return Err(ReadError::line(line, ReadProblem::vertex(i64::from(largest) + 1, count)));
+            return Err(FileError::line(line, FileProblem::vertex(i64::from(largest) + 1, count)));
         }
         // A file of points alone is named as such.
         let passed_over = match self.soup.triangles.is_empty() {
@@ -191,12 +191,12 @@ fn colour(words: Words<'_>) -> Option<[f32; 4]> {
 /// The vertex of a face corner `v`, `v/vt`, `v//vn` or `v/vt/vn`, from 0: files count from 1, or
 /// backwards from the last vertex so far.
 #[inline]
-fn corner(word: &[u8], count: usize) -> Result<u32, ReadProblem> {
+fn corner(word: &[u8], count: usize) -> Result<u32, FileProblem> {
     let end = word.iter().position(|&b| b == b'/').unwrap_or(word.len());
-    let index = integer(&word[..end]).ok_or_else(|| ReadProblem::syntax("a vertex number", quoted(word)))?;
+    let index = integer(&word[..end]).ok_or_else(|| FileProblem::syntax("a vertex number", quoted(word)))?;
     let from_zero = if index < 0 { index.checked_add(count as i64) } else { index.checked_sub(1) };
     from_zero
         .and_then(|i| u32::try_from(i).ok())
         .filter(|&i| i < u32::MAX)
-        .ok_or_else(|| ReadProblem::vertex(index, count))
+        .ok_or_else(|| FileProblem::vertex(index, count))
 }

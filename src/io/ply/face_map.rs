@@ -3,8 +3,9 @@
 use std::io::Write;
 
 use super::super::error::WriteError;
-use super::super::{Format, check};
-use super::legend::LegendEntry;
+use super::super::format::Format;
+use super::super::legend::LegendEntry;
+use super::super::sound::check;
 use super::write::{More, Row, channel_lines, header_with, is_single, write_binary_rows};
 use crate::mesh::TriMesh;
 

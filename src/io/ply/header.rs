@@ -1,8 +1,8 @@
 //! The header: what elements there are and how their rows are laid out.
 
-use super::super::error::{ReadError, ReadProblem};
+use super::super::error::{FileError, FileProblem};
+use super::super::legend::LegendEntry;
 use super::super::text::{Words, integer, quoted, quoted_or_end};
-use super::legend::LegendEntry;
 
 /// How the data after the header is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,7 +90,7 @@ impl Header {
         self.elements.iter().position(|e| e.name == name)
     }
 
-    pub(super) fn read(bytes: &[u8]) -> Result<Self, ReadError> {
+    pub(super) fn read(bytes: &[u8]) -> Result<Self, FileError> {
         // The data may hold any byte right after the header's last line, so lines end as the first does.
         let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
         let mut encoding = None;
@@ -100,7 +100,7 @@ impl Header {
         for (i, raw) in bytes.split_inclusive(|&b| b == end).enumerate() {
             used += raw.len();
             let at = i + 1;
-            let fail = |expected: &str, found: String| ReadError::line(at, ReadProblem::syntax(expected, found));
+            let fail = |expected: &str, found: String| FileError::line(at, FileProblem::syntax(expected, found));
             let mut words = Words::new(raw);
             let word = words.next();
             match word {
@@ -109,11 +109,11 @@ impl Header {
                         return Err(fail("`ply`", quoted_or_end(word)));
                     }
                 }
-                Some(b"format") => encoding = Some(encoding_of(&mut words).map_err(|p| ReadError::line(at, p))?),
-                Some(b"element") => elements.push(element(&mut words, at).map_err(|p| ReadError::line(at, p))?),
+                Some(b"format") => encoding = Some(encoding_of(&mut words).map_err(|p| FileError::line(at, p))?),
+                Some(b"element") => elements.push(element(&mut words, at).map_err(|p| FileError::line(at, p))?),
                 Some(b"property") => {
                     let element = elements.last_mut().ok_or_else(|| fail("`element`", quoted(raw.trim_ascii())))?;
-                    element.properties.push(property(&mut words).map_err(|p| ReadError::line(at, p))?);
+                    element.properties.push(property(&mut words).map_err(|p| FileError::line(at, p))?);
                 }
                 Some(b"end_header") => {
                     let encoding = encoding.ok_or_else(|| fail("a `format` line in the header", "none".into()))?;
@@ -127,38 +127,38 @@ impl Header {
                 Some(word) => return Err(fail("a line of the header", quoted(word))),
             }
         }
-        Err(ReadError::byte(bytes.len(), ReadProblem::truncated("`end_header`", "the file ends within the header")))
+        Err(FileError::byte(bytes.len(), FileProblem::truncated("`end_header`", "the file ends within the header")))
     }
 }
 
-fn encoding_of(words: &mut Words<'_>) -> Result<Encoding, ReadProblem> {
+fn encoding_of(words: &mut Words<'_>) -> Result<Encoding, FileProblem> {
     match words.next() {
         Some(b"ascii") => Ok(Encoding::Ascii),
         Some(b"binary_little_endian") => Ok(Encoding::LittleEndian),
         Some(b"binary_big_endian") => Ok(Encoding::BigEndian),
         other => {
-            Err(ReadProblem::syntax("`ascii`, `binary_little_endian` or `binary_big_endian`", quoted_or_end(other)))
+            Err(FileProblem::syntax("`ascii`, `binary_little_endian` or `binary_big_endian`", quoted_or_end(other)))
         }
     }
 }
 
-fn name(word: Option<&[u8]>, expected: &str) -> Result<String, ReadProblem> {
-    let word = word.ok_or_else(|| ReadProblem::syntax(expected, quoted_or_end(None)))?;
+fn name(word: Option<&[u8]>, expected: &str) -> Result<String, FileProblem> {
+    let word = word.ok_or_else(|| FileProblem::syntax(expected, quoted_or_end(None)))?;
     Ok(String::from_utf8_lossy(word).into_owned())
 }
 
-fn element(words: &mut Words<'_>, line: usize) -> Result<Element, ReadProblem> {
+fn element(words: &mut Words<'_>, line: usize) -> Result<Element, FileProblem> {
     let name = name(words.next(), "a name of an element")?;
     let word = words.next();
     let count = word.and_then(integer).and_then(|n| usize::try_from(n).ok());
-    let count = count.ok_or_else(|| ReadProblem::syntax("a number of rows", quoted_or_end(word)))?;
+    let count = count.ok_or_else(|| FileProblem::syntax("a number of rows", quoted_or_end(word)))?;
     Ok(Element { name, count, properties: Vec::new(), line })
 }
 
-fn property(words: &mut Words<'_>) -> Result<Property, ReadProblem> {
+fn property(words: &mut Words<'_>) -> Result<Property, FileProblem> {
     let scalar = |word: Option<&[u8]>| {
         let found = word.and_then(Scalar::of);
-        found.ok_or_else(|| ReadProblem::syntax("a type such as `float` or `int`", quoted_or_end(word)))
+        found.ok_or_else(|| FileProblem::syntax("a type such as `float` or `int`", quoted_or_end(word)))
     };
     let first = words.next();
     let (list, scalar) = match first {

@@ -3,7 +3,6 @@
 mod colour;
 mod face_map;
 mod header;
-mod legend;
 mod rows;
 mod texture;
 mod vertex_map;
@@ -17,20 +16,19 @@ use self::colour::Channels;
 use self::header::{Element, Header};
 use self::rows::Rows;
 use self::texture::{OfFaces, OfVertices};
-use super::error::{ReadError, ReadProblem};
+use super::error::{FileError, FileProblem};
 use super::soup::{Soup, too_many_vertices};
 use super::{Format, Loaded};
 
 pub use face_map::{FaceMap, encode_face_map};
-pub use legend::LegendEntry;
 pub use vertex_map::{VertexMap, encode_vertex_map};
 pub(super) use write::{write_ascii, write_binary};
 
 /// Reads the file at `path`, beside which its images lie.
-pub(super) fn read(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, ReadError> {
+pub(super) fn read(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, FileError> {
     let header = Header::read(bytes)?;
     let vertices = header.element("vertex").ok_or_else(|| {
-        ReadError::line(header.lines, ReadProblem::syntax("an element `vertex` in the header", "none"))
+        FileError::line(header.lines, FileProblem::syntax("an element `vertex` in the header", "none"))
     })?;
     let mut rows = Rows::new(bytes, &header);
     let mut soup = Soup::new();
@@ -65,11 +63,11 @@ fn read_vertices(
     rows: &mut Rows<'_>,
     soup: &mut Soup,
     of_vertices: &mut OfVertices,
-) -> Result<(), ReadError> {
+) -> Result<(), FileError> {
     let axis = |name: &str| {
         let found = element.properties.iter().position(|p| p.name == name && p.list.is_none());
-        let fail = || ReadProblem::syntax(format!("a property `{name}` of `vertex`"), "none");
-        found.ok_or_else(|| ReadError::line(element.line, fail()))
+        let fail = || FileProblem::syntax(format!("a property `{name}` of `vertex`"), "none");
+        found.ok_or_else(|| FileError::line(element.line, fail()))
     };
     let axes = [axis("x")?, axis("y")?, axis("z")?];
     rows.can_hold(element)?;
@@ -112,7 +110,7 @@ impl Faces {
         }
     }
 
-    fn read(self, element: &Element, rows: &mut Rows<'_>, soup: &mut Soup) -> Result<(), ReadError> {
+    fn read(self, element: &Element, rows: &mut Rows<'_>, soup: &mut Soup) -> Result<(), FileError> {
         rows.can_hold(element)?;
         let count = soup.positions.len();
         if let Self::Polygons(_) = self {
@@ -141,12 +139,12 @@ impl Faces {
     }
 }
 
-fn indices(values: &[f64], count: usize, corners: &mut Vec<u32>) -> Result<(), ReadProblem> {
+fn indices(values: &[f64], count: usize, corners: &mut Vec<u32>) -> Result<(), FileProblem> {
     corners.clear();
     for &value in values {
         // Written so that NaN is out of range too.
         if !(value >= 0.0 && value < count as f64 && value.fract() == 0.0) {
-            return Err(ReadProblem::vertex(value as i64, count));
+            return Err(FileProblem::vertex(value as i64, count));
         }
         corners.push(value as u32);
     }

@@ -1,6 +1,6 @@
 //! The rows of the elements, one after another, as numbers.
 
-use super::super::error::{Place, ReadError, ReadProblem};
+use super::super::error::{FileError, FileProblem, Location};
 use super::super::text::{Lines, Words, number, quoted_or_end};
 use super::header::{Element, Encoding, Header, Property, Scalar};
 
@@ -31,35 +31,35 @@ impl<'a> Rows<'a> {
     }
 
     /// The error for a problem in the row last read.
-    pub(super) fn fail(&self, problem: ReadProblem) -> ReadError {
+    pub(super) fn fail(&self, problem: FileProblem) -> FileError {
         match self.data {
-            Data::Text(_) => ReadError::line(self.place as usize, problem),
-            Data::Binary { .. } => ReadError::at(Place::Byte(self.place), problem),
+            Data::Text(_) => FileError::line(self.place as usize, problem),
+            Data::Binary { .. } => FileError::at(Location::Byte(self.place), problem),
         }
     }
 
     /// An error unless the bytes that are left could hold the rows of `element`, each as short as
     /// can be. Only then is it safe to set memory aside for them.
-    pub(super) fn can_hold(&self, element: &Element) -> Result<(), ReadError> {
+    pub(super) fn can_hold(&self, element: &Element) -> Result<(), FileError> {
         let (shortest, left, place) = match &self.data {
             // A digit and a space or line end for each property, of which the very last may be missing.
-            Data::Text(lines) => (2 * element.properties.len(), lines.bytes_left() + 1, Place::Line(lines.number())),
+            Data::Text(lines) => (2 * element.properties.len(), lines.bytes_left() + 1, Location::Line(lines.number())),
             Data::Binary { bytes, used, .. } => {
-                (fixed_size(element), bytes.len() - used, Place::Byte(bytes.len() as u64))
+                (fixed_size(element), bytes.len() - used, Location::Byte(bytes.len() as u64))
             }
         };
         match element.count.checked_mul(shortest) {
             Some(needed) if needed <= left => Ok(()),
             _ => {
                 let expected = format!("{} rows of `{}`", element.count, element.name);
-                Err(ReadError::at(place, ReadProblem::truncated(expected, format!("{left} bytes are left for them"))))
+                Err(FileError::at(place, FileProblem::truncated(expected, format!("{left} bytes are left for them"))))
             }
         }
     }
 
     /// Reads a row of `element`.
     #[inline]
-    pub(super) fn next(&mut self, element: &Element) -> Result<(), ReadError> {
+    pub(super) fn next(&mut self, element: &Element) -> Result<(), FileError> {
         self.values.clear();
         self.ends.clear();
         match &mut self.data {
@@ -68,7 +68,7 @@ impl<'a> Rows<'a> {
                 self.place = at as u64;
                 let mut words = Words::new(line);
                 for property in &element.properties {
-                    text_property(&mut words, property, &mut self.values).map_err(|p| ReadError::line(at, p))?;
+                    text_property(&mut words, property, &mut self.values).map_err(|p| FileError::line(at, p))?;
                     self.ends.push(self.values.len());
                 }
             }
@@ -76,7 +76,7 @@ impl<'a> Rows<'a> {
                 self.place = *used as u64;
                 for property in &element.properties {
                     binary_property(bytes, used, *big, property, &mut self.values)
-                        .map_err(|problem| ReadError::byte(bytes.len(), problem))?;
+                        .map_err(|problem| FileError::byte(bytes.len(), problem))?;
                     self.ends.push(self.values.len());
                 }
             }
@@ -98,7 +98,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Reads over all rows of `element`.
-    pub(super) fn pass_over(&mut self, element: &Element) -> Result<(), ReadError> {
+    pub(super) fn pass_over(&mut self, element: &Element) -> Result<(), FileError> {
         if element.properties.is_empty() {
             return Ok(());
         }
@@ -121,17 +121,17 @@ fn fixed_size(element: &Element) -> usize {
 }
 
 /// The next line that is not blank.
-fn text_row<'a>(lines: &mut Lines<'a>, element: &Element) -> Result<(usize, &'a [u8]), ReadError> {
+fn text_row<'a>(lines: &mut Lines<'a>, element: &Element) -> Result<(usize, &'a [u8]), FileError> {
     lines.find(|(_, line)| !line.trim_ascii().is_empty()).ok_or_else(|| {
         let expected = format!("{} rows of `{}`", element.count, element.name);
-        ReadError::line(lines.number(), ReadProblem::truncated(expected, "the file ends before the last"))
+        FileError::line(lines.number(), FileProblem::truncated(expected, "the file ends before the last"))
     })
 }
 
-fn text_property(words: &mut Words<'_>, property: &Property, values: &mut Vec<f64>) -> Result<(), ReadProblem> {
+fn text_property(words: &mut Words<'_>, property: &Property, values: &mut Vec<f64>) -> Result<(), FileProblem> {
     let mut value = || {
         let word = words.next();
-        let fail = || ReadProblem::syntax(format!("a number for `{}`", property.name), quoted_or_end(word));
+        let fail = || FileProblem::syntax(format!("a number for `{}`", property.name), quoted_or_end(word));
         word.and_then(number).ok_or_else(fail)
     };
     let length = if property.list.is_some() { length(value()?, property)? } else { 1 };
@@ -141,11 +141,11 @@ fn text_property(words: &mut Words<'_>, property: &Property, values: &mut Vec<f6
     Ok(())
 }
 
-fn length(value: f64, property: &Property) -> Result<usize, ReadProblem> {
+fn length(value: f64, property: &Property) -> Result<usize, FileProblem> {
     if value >= 0.0 && value <= f64::from(u32::MAX) && value.fract() == 0.0 {
         Ok(value as usize)
     } else {
-        Err(ReadProblem::syntax(format!("the length of `{}`", property.name), value.to_string()))
+        Err(FileProblem::syntax(format!("the length of `{}`", property.name), value.to_string()))
     }
 }
 
@@ -156,8 +156,8 @@ fn binary_property(
     big: bool,
     property: &Property,
     values: &mut Vec<f64>,
-) -> Result<(), ReadProblem> {
-    let truncated = || ReadProblem::truncated(format!("a value of `{}`", property.name), "the file ends within a row");
+) -> Result<(), FileProblem> {
+    let truncated = || FileProblem::truncated(format!("a value of `{}`", property.name), "the file ends within a row");
     let length = match property.list {
         None => 1,
         Some(kind) => {

@@ -3,7 +3,8 @@
 use std::io::Write;
 
 use super::super::error::WriteError;
-use super::super::{Format, check};
+use super::super::format::Format;
+use super::super::sound::check;
 use super::write::{More, Row, channel_lines, header_with, is_single, write_binary_rows};
 use crate::mesh::TriMesh;
 

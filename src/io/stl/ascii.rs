@@ -4,9 +4,9 @@ use std::io::Write;
 
 use glam::DVec3;
 
-use super::super::error::{ReadError, ReadProblem, WriteError};
-use super::super::soup::{Soup, Welder, counted};
-use super::super::text::{Lines, TextOut, Words, number, quoted};
+use super::super::error::{FileError, FileProblem, WriteError};
+use super::super::soup::{Soup, Welder};
+use super::super::text::{Lines, TextOut, Words, counted, number, quoted};
 use super::normal;
 use crate::mesh::TriMesh;
 
@@ -50,39 +50,39 @@ impl<'a> Stream<'a> {
         std::mem::replace(&mut self.words, Words::new(b"")).rest()
     }
 
-    fn fail(&self, problem: ReadProblem) -> ReadError {
-        ReadError::line(self.lines.number(), problem)
+    fn fail(&self, problem: FileProblem) -> FileError {
+        FileError::line(self.lines.number(), problem)
     }
 
     /// The next statement; the end of the file is an error that says what was `expected`.
-    fn word(&mut self, expected: &str) -> Result<&'a [u8], ReadError> {
+    fn word(&mut self, expected: &str) -> Result<&'a [u8], FileError> {
         let word = self.next_statement();
-        word.ok_or_else(|| self.fail(ReadProblem::truncated(expected, "the file ends within a facet")))
+        word.ok_or_else(|| self.fail(FileProblem::truncated(expected, "the file ends within a facet")))
     }
 
     /// The next word, whatever it means.
-    fn any_word(&mut self, expected: &str) -> Result<&'a [u8], ReadError> {
+    fn any_word(&mut self, expected: &str) -> Result<&'a [u8], FileError> {
         let word = self.next();
-        word.ok_or_else(|| self.fail(ReadProblem::truncated(expected, "the file ends within a facet")))
+        word.ok_or_else(|| self.fail(FileProblem::truncated(expected, "the file ends within a facet")))
     }
 
-    fn keyword(&mut self, keyword: &str) -> Result<(), ReadError> {
+    fn keyword(&mut self, keyword: &str) -> Result<(), FileError> {
         let expected = format!("`{keyword}`");
         let word = self.word(&expected)?;
-        if is(word, keyword) { Ok(()) } else { Err(self.fail(ReadProblem::syntax(expected, quoted(word)))) }
+        if is(word, keyword) { Ok(()) } else { Err(self.fail(FileProblem::syntax(expected, quoted(word)))) }
     }
 
-    fn point(&mut self) -> Result<DVec3, ReadError> {
+    fn point(&mut self) -> Result<DVec3, FileError> {
         let mut p = DVec3::ZERO;
         for k in 0..3 {
             let word = self.any_word("a coordinate")?;
-            p[k] = number(word).ok_or_else(|| self.fail(ReadProblem::syntax("a coordinate", quoted(word))))?;
+            p[k] = number(word).ok_or_else(|| self.fail(FileProblem::syntax("a coordinate", quoted(word))))?;
         }
         Ok(p)
     }
 
     /// What follows the word `facet`: the normal is passed over, whatever it is written as.
-    fn facet(&mut self, corners: &mut Vec<DVec3>) -> Result<(), ReadError> {
+    fn facet(&mut self, corners: &mut Vec<DVec3>) -> Result<(), FileError> {
         corners.clear();
         // `normal`, three numbers, and what may trail.
         const MOST: usize = 20;
@@ -92,7 +92,7 @@ impl<'a> Stream<'a> {
                 break;
             }
             if is(word, "vertex") || is(word, "endfacet") {
-                return Err(self.fail(ReadProblem::syntax("`outer loop`", quoted(word))));
+                return Err(self.fail(FileProblem::syntax("`outer loop`", quoted(word))));
             }
         }
         self.keyword("loop")?;
@@ -102,12 +102,12 @@ impl<'a> Stream<'a> {
                 break;
             }
             if !is(word, "vertex") {
-                return Err(self.fail(ReadProblem::syntax("`vertex` or `endloop`", quoted(word))));
+                return Err(self.fail(FileProblem::syntax("`vertex` or `endloop`", quoted(word))));
             }
             corners.push(self.point()?);
         }
         if corners.len() < 3 {
-            return Err(self.fail(ReadProblem::syntax("three vertices in a loop", corners.len().to_string())));
+            return Err(self.fail(FileProblem::syntax("three vertices in a loop", corners.len().to_string())));
         }
         self.keyword("endfacet")
     }
@@ -117,7 +117,7 @@ fn is(word: &[u8], keyword: &str) -> bool {
     word.eq_ignore_ascii_case(keyword.as_bytes())
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
+pub(super) fn read(bytes: &[u8]) -> Result<Soup, FileError> {
     let mut stream = Stream { lines: Lines::new(bytes), words: Words::new(b""), first: false, trailing: 0 };
     let mut soup = Soup::new();
     // About 250 bytes a facet in files as they are.
@@ -139,7 +139,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
             stream.rest_of_line();
             open = false;
         } else {
-            return Err(stream.fail(ReadProblem::syntax("`facet`, `solid` or `endsolid`", quoted(word))));
+            return Err(stream.fail(FileProblem::syntax("`facet`, `solid` or `endsolid`", quoted(word))));
         }
     }
     if stream.trailing > 0 {

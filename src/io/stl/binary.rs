@@ -4,8 +4,9 @@ use std::io::Write;
 
 use glam::{DVec3, Vec3};
 
-use super::super::error::{ReadError, ReadProblem, WriteError, WriteProblem};
-use super::super::soup::{Soup, Welder, counted};
+use super::super::error::{FileError, FileProblem, WriteError, WriteProblem};
+use super::super::soup::{Soup, Welder};
+use super::super::text::counted;
 use super::normal;
 use crate::io::Format;
 use crate::mesh::TriMesh;
@@ -35,10 +36,10 @@ pub(in crate::io) fn looks_like(bytes: &[u8]) -> bool {
 
 /// How many facets to read. A count above what is there means a file cut short. A count below
 /// it is believed when the rest is not whole facets, and is otherwise taken as never filled in.
-fn facets_to_read(bytes: &[u8], soup: &mut Soup) -> Result<usize, ReadError> {
+fn facets_to_read(bytes: &[u8], soup: &mut Soup) -> Result<usize, FileError> {
     let truncated = |expected: String| {
         let found = format!("the file ends after {} bytes", bytes.len());
-        ReadError::byte(bytes.len(), ReadProblem::truncated(expected, found))
+        FileError::byte(bytes.len(), FileProblem::truncated(expected, found))
     };
     let Some(stated) = count(bytes) else {
         return Err(truncated("84 bytes of header and count".into()));
@@ -67,7 +68,7 @@ fn facets_to_read(bytes: &[u8], soup: &mut Soup) -> Result<usize, ReadError> {
     Ok(stated)
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<Soup, ReadError> {
+pub(super) fn read(bytes: &[u8]) -> Result<Soup, FileError> {
     let mut soup = Soup::new();
     let facets = facets_to_read(bytes, &mut soup)?;
     let mut welder = Welder::for_triangles(facets);

@@ -6,7 +6,7 @@ mod binary;
 
 use glam::DVec3;
 
-use super::error::ReadError;
+use super::error::FileError;
 use super::{Format, Loaded};
 use crate::mesh::TriMesh;
 
@@ -30,7 +30,7 @@ fn begins_with_solid(bytes: &[u8]) -> bool {
 }
 
 /// Reads either kind.
-pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
+pub(super) fn read(bytes: &[u8]) -> Result<Loaded, FileError> {
     let too_short_for_binary = bytes.len() < binary::PREFIX && begins_with_solid(bytes) && !bytes.contains(&0);
     let ascii = !is_exactly_binary(bytes) && (looks_ascii(bytes) || too_short_for_binary);
     let soup = if ascii { ascii::read(bytes)? } else { binary::read(bytes)? };

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::super::soup::counted;
+use super::super::text::counted;
 use super::{Gallery, Material, TexCoords, TextureMap};
 
 /// The textures of a mesh while it is read.

@@ -10,9 +10,9 @@ use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::Format;
 use super::colour::{Colours, Rgba, WHITE};
-use super::soup::counted;
+use super::format::Format;
+use super::text::counted;
 use crate::mesh::TriMesh;
 
 pub(super) use beside::{MOST_BESIDE, file_beside, read_beside};

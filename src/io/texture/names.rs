@@ -2,10 +2,14 @@
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
+use std::fs;
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::super::Format;
+use super::super::draft::folder_of;
+use super::super::error::{WriteError, WriteProblem};
+use super::super::format::Format;
 use super::super::text::TextOut;
 use super::{ImageKind, TextureImage, TextureMap};
 
@@ -21,6 +25,14 @@ pub struct SideFile {
     pub bytes: Arc<[u8]>,
 }
 
+impl SideFile {
+    /// Whether there is a file at `path` with these bytes already.
+    pub fn is_at(&self, path: &Path) -> bool {
+        let same_length = path.metadata().is_ok_and(|found| found.is_file() && found.len() == self.bytes.len() as u64);
+        same_length && fs::read(path).is_ok_and(|found| found[..] == self.bytes[..])
+    }
+}
+
 impl TextureMap {
     /// The files that belong beside a mesh file of `format` at `path`: its materials (OBJ) and images (OBJ and PLY).
     pub fn side_files(&self, format: Format, path: &Path) -> Vec<SideFile> {
@@ -32,6 +44,33 @@ impl TextureMap {
             Format::Ply => images.collect(),
             _ => Vec::new(),
         }
+    }
+
+    /// The [side files](Self::side_files) that are not there yet with the same content. None may take the place of a file that these textures
+    /// were read from.
+    pub(in crate::io) fn files_to_write(&self, format: Format, path: &Path) -> Result<Vec<SideFile>, WriteError> {
+        let mut wanted = self.side_files(format, path);
+        wanted.retain(|file| !file.is_at(&folder_of(path).join(&file.name)));
+        for side in &wanted {
+            let file = folder_of(path).join(&side.name);
+            if self.was_read_from(&file)? {
+                return Err(WriteProblem::TextureInUse { file }.into());
+            }
+        }
+        Ok(wanted)
+    }
+
+    /// Whether the textures were read from the file at `path`, links followed. It is `false` where there is no such file.
+    ///
+    /// # Errors
+    /// When the operating system does not tell.
+    pub fn was_read_from(&self, path: &Path) -> io::Result<bool> {
+        let place = match path.canonicalize() {
+            Ok(place) => place,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(false),
+            Err(error) => return Err(error),
+        };
+        Ok(self.files.iter().any(|file| file.canonicalize().is_ok_and(|file| file == place)))
     }
 
     /// The file of the materials, where they are more than names.

@@ -5,13 +5,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{DAffine3, DVec3};
 
 use super::super::colour::{Rgba, WHITE};
-use super::super::error::{Place, ReadError, ReadProblem};
-use super::super::soup::{Expansion, Soup, counted, too_many_vertices};
-use super::super::text::quoted;
+use super::super::error::{FileError, FileProblem, Location};
+use super::super::soup::{Expansion, Soup, too_many_vertices};
+use super::super::text::{counted, quoted};
 use super::model::{Object, Placed};
+use super::models::{Inherited, Models};
 use super::roles::{Role, Roles};
 use super::texture::Textures;
-use super::{Inherited, Models};
+
 use crate::mesh::Bounds;
 
 /// Components within components deeper than this are not followed.
@@ -74,7 +75,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds an item of the build: an object and all its components, depth first and in order.
-    pub(super) fn place(&mut self, item: &Placed) -> Result<(), ReadError> {
+    pub(super) fn place(&mut self, item: &Placed) -> Result<(), FileError> {
         let outermost = Open {
             model: self.root,
             object: item.object,
@@ -95,13 +96,13 @@ impl<'a> Builder<'a> {
             top.next += 1;
             let open = self.open(&component, top)?;
             if stack.iter().any(|outer| (outer.model, outer.object) == (open.model, open.object)) {
-                let problem = ReadProblem::syntax("components that end", "an object within itself");
+                let problem = FileProblem::syntax("components that end", "an object within itself");
                 return Err(self.fail(open.model, open.object, problem));
             }
             if stack.len() == DEEPEST {
                 let reason =
                     format!("components within components more than {DEEPEST} deep are not read; flatten the assembly");
-                return Err(self.fail(open.model, open.object, ReadProblem::Unsupported(reason)));
+                return Err(self.fail(open.model, open.object, FileProblem::Unsupported(reason)));
             }
             stack.push(open);
         }
@@ -111,13 +112,13 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds the own mesh of an object within `outer`.
-    fn open(&mut self, item: &Placed, outer: &Open) -> Result<Open, ReadError> {
+    fn open(&mut self, item: &Placed, outer: &Open) -> Result<Open, FileError> {
         let model = match &item.path {
             Some(path) => self.models.load(path)?,
             None => outer.model,
         };
         let Some(object) = self.models.loaded[model].objects.get(&item.object) else {
-            let problem = ReadProblem::syntax(format!("an object with the id {}", item.object), "none");
+            let problem = FileProblem::syntax(format!("an object with the id {}", item.object), "none");
             return Err(self.fail(model, item.object, problem));
         };
         let said = (outer.model == self.root).then(|| self.roles.component(outer.object, item.object)).flatten();
@@ -138,7 +139,7 @@ impl<'a> Builder<'a> {
         let spent = allowance.spend(cost as u64);
         let open = Open { model, object: item.object, transform, name, default, role, next: 0 };
         self.placed.insert((model, item.object));
-        spent.map_err(ReadError::from).and_then(|()| self.add(&open)).map_err(|error| match error.place {
+        spent.map_err(FileError::from).and_then(|()| self.add(&open)).map_err(|error| match error.location {
             None => self.fail(model, item.object, *error.problem),
             Some(_) => error,
         })?;
@@ -146,7 +147,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds the mesh of an object, in pieces where its triangles have roles of their own.
-    fn add(&mut self, open: &Open) -> Result<(), ReadError> {
+    fn add(&mut self, open: &Open) -> Result<(), FileError> {
         let Some(object) = self.models.loaded[open.model].objects.get(&open.object) else { return Ok(()) };
         if object.triangles.is_empty() {
             return Ok(());
@@ -193,7 +194,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn add_piece(&mut self, open: &Open, piece: Piece<'_>, negative: bool) -> Result<(), ReadError> {
+    fn add_piece(&mut self, open: &Open, piece: Piece<'_>, negative: bool) -> Result<(), FileError> {
         let Some(object) = self.models.loaded[open.model].objects.get(&open.object) else { return Ok(()) };
         let soup = if negative { &mut self.negative } else { &mut self.soup };
         let numbers = piece.triangles.unwrap_or_else(|| (0..object.triangles.len()).collect());
@@ -207,9 +208,9 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    fn fail(&self, model: usize, object: u32, problem: ReadProblem) -> ReadError {
+    fn fail(&self, model: usize, object: u32, problem: FileProblem) -> FileError {
         let name = &self.models.loaded[model].name;
-        ReadError::at(Place::Item(format!("{name}, object {object}")), problem)
+        FileError::at(Location::Item(format!("{name}, object {object}")), problem)
     }
 
     /// What is there, and what is taken away from it.
@@ -279,7 +280,7 @@ fn add_mesh(
     name: &str,
     numbers: &[usize],
     transform: &DAffine3,
-) -> Result<(), ReadError> {
+) -> Result<(), FileError> {
     let first = soup.positions.len();
     if first + object.vertices.len() > u32::MAX as usize {
         return Err(too_many_vertices());

@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use quick_xml::events::BytesStart;
 
-use super::super::error::ReadProblem;
+use super::super::error::FileProblem;
 use super::super::text::quoted;
-use super::model::text;
+use super::xml::text;
 
 /// Name spaces whose elements are read, or change nothing about the shape.
 const READ: [&str; 6] = [
@@ -79,11 +79,11 @@ impl Extensions {
     }
 
     /// Refuses a model that requires what is not read.
-    pub(super) fn check(&self) -> Result<(), ReadProblem> {
+    pub(super) fn check(&self) -> Result<(), FileProblem> {
         let undeclared =
             self.required.iter().find(|prefix| !self.declared.contains_key(*prefix)).map(|prefix| quoted(prefix));
         match self.unread(self.required.iter()).into_iter().next().or(undeclared) {
-            Some(extension) => Err(ReadProblem::Unsupported(format!(
+            Some(extension) => Err(FileProblem::Unsupported(format!(
                 "it requires the extension {extension}, which is not read here; export it as plain meshes"
             ))),
             None => Ok(()),

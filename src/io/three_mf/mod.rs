@@ -4,29 +4,29 @@
 mod builder;
 mod extensions;
 mod model;
+mod models;
 mod package;
 mod pictures;
 mod roles;
 mod texture;
 mod write;
-
-use std::collections::BTreeMap;
+mod xml;
 
 use self::builder::Builder;
-use self::model::{Model, Property};
+use self::models::Models;
 use self::package::Package;
 use self::roles::Roles;
-use super::colour::Rgba;
-use super::error::ReadError;
-use super::{Format, Loaded, TexCoords};
+use super::error::FileError;
+use super::format::Format;
+use super::loaded::Loaded;
 
 pub(super) use write::write;
 
-pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
+pub(super) fn read(bytes: &[u8]) -> Result<Loaded, FileError> {
     let mut package = Package::open(bytes)?;
     let root = package.root_model()?;
     let roles = Roles::read(&mut package);
-    let mut models = Models { package, loaded: Vec::new(), known: BTreeMap::new() };
+    let mut models = Models::new(package);
     let root = models.load(&root)?;
     let unit = models.loaded[root].unit;
     // A copy, because placing objects may load further models.
@@ -46,50 +46,4 @@ pub(super) fn read(bytes: &[u8]) -> Result<Loaded, ReadError> {
     let negative = negative.finish_negative();
     let loaded = soup.finish(Format::ThreeMf, Some(unit))?;
     Ok(Loaded { negative, ..loaded })
-}
-
-/// The models of a package, read when first asked for.
-struct Models<'a> {
-    package: Package<'a>,
-    loaded: Vec<Model>,
-    known: BTreeMap<String, usize>,
-}
-
-impl Models<'_> {
-    fn load(&mut self, name: &str) -> Result<usize, ReadError> {
-        if let Some(&known) = self.known.get(name) {
-            return Ok(known);
-        }
-        let model = self.package.read_model(name)?;
-        model.extensions.check().map_err(|problem| ReadError::item(name, problem))?;
-        self.loaded.push(model);
-        self.known.insert(name.to_owned(), self.loaded.len() - 1);
-        Ok(self.loaded.len() - 1)
-    }
-
-    /// The colours of a property, if it is colours.
-    fn colours(&self, property: Inherited) -> Option<[Rgba; 3]> {
-        let Inherited { model, property } = property;
-        let entries = self.loaded[model].groups.get(&property.group)?;
-        let colour = |entry: u32| entries.get(entry as usize).copied();
-        let [a, b, c] = property.entries.map(colour);
-        Some([a?, b?, c?])
-    }
-
-    /// The image of a property (the model that names it, and its number there) and the places on it, if it is a place on an image.
-    fn places(&self, property: Inherited) -> Option<((usize, u32), TexCoords)> {
-        let Inherited { model, property } = property;
-        let (image, entries) = self.loaded[model].places.get(&property.group)?;
-        self.loaded[model].textures.get(image)?;
-        let place = |entry: u32| entries.get(entry as usize).copied();
-        let [a, b, c] = property.entries.map(place);
-        Some(((model, *image), [a?, b?, c?]))
-    }
-}
-
-/// A property and the model that has its group.
-#[derive(Clone, Copy)]
-struct Inherited {
-    model: usize,
-    property: Property,
 }

@@ -7,11 +7,11 @@ use glam::{DAffine3, DVec3};
 use quick_xml::events::{BytesStart, Event};
 
 use super::super::colour::Rgba;
-use super::super::error::ReadProblem;
+use super::super::error::FileProblem;
 use super::super::text::{Words, integer, number, quoted, single};
 use super::extensions::Extensions;
-use super::package::{Xml, XmlError};
 use super::roles::Role;
+use super::xml::{Xml, XmlError, attribute, text};
 use crate::io::Unit;
 
 /// The number of an image, and places on it.
@@ -60,7 +60,7 @@ pub(super) struct Object {
 }
 
 impl Object {
-    fn add_triangle(&mut self, element: &BytesStart<'_>) -> Result<(), ReadProblem> {
+    fn add_triangle(&mut self, element: &BytesStart<'_>) -> Result<(), FileProblem> {
         let triangle = triangle(element, self.vertices.len())?;
         if let Some(property) = property(element, self.default)? {
             self.properties.resize(self.triangles.len(), None);
@@ -108,7 +108,7 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
     loop {
         match xml.event()? {
             Event::Eof if whole => return Ok(model),
-            Event::Eof => return Err(ReadProblem::truncated("`</model>`", "the file ends").into()),
+            Event::Eof => return Err(FileProblem::truncated("`</model>`", "the file ends").into()),
             Event::Start(e) => match (e.local_name().as_ref(), &mut object) {
                 (b"vertex", Some((_, object))) if in_mesh => object.vertices.push(vertex(&e)?),
                 (b"triangle", Some((_, object))) if in_mesh => object.add_triangle(&e)?,
@@ -166,25 +166,11 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
     }
 }
 
-/// The raw value of an attribute, by its name without a prefix.
-pub(super) fn attribute<'a>(element: &'a BytesStart<'_>, name: &[u8]) -> Option<Cow<'a, [u8]>> {
-    let mut attributes = element.attributes();
-    // The check for repeated names takes time that grows with the square of their number.
-    let found = attributes.with_checks(false).flatten().find(|a| a.key.local_name().as_ref() == name);
-    found.map(|a| a.value)
-}
-
-/// An attribute's value with its entities replaced, where it has none that are unknown.
-pub(super) fn text(value: &[u8]) -> String {
-    let raw = String::from_utf8_lossy(value);
-    quick_xml::escape::unescape(&raw).map(Cow::into_owned).unwrap_or_else(|_| raw.clone().into_owned())
-}
-
-fn needed<'a>(element: &'a BytesStart<'_>, name: &[u8]) -> Result<Cow<'a, [u8]>, ReadProblem> {
+fn needed<'a>(element: &'a BytesStart<'_>, name: &[u8]) -> Result<Cow<'a, [u8]>, FileProblem> {
     let place = String::from_utf8_lossy(element.local_name().into_inner()).into_owned();
     attribute(element, name).ok_or_else(|| {
         let expected = format!("an attribute `{}` of `{place}`", String::from_utf8_lossy(name));
-        ReadProblem::syntax(expected, "none")
+        FileProblem::syntax(expected, "none")
     })
 }
 
@@ -192,25 +178,25 @@ fn name_of(element: &BytesStart<'_>) -> String {
     attribute(element, b"name").map(|value| text(&value)).unwrap_or_default()
 }
 
-fn unit(element: &BytesStart<'_>) -> Result<Unit, ReadProblem> {
+fn unit(element: &BytesStart<'_>) -> Result<Unit, FileProblem> {
     match attribute(element, b"unit") {
         None => Ok(Unit::Millimetre),
         Some(value) => {
-            text(&value).parse().map_err(|_| ReadProblem::syntax("a unit such as `millimeter`", quoted(&value)))
+            text(&value).parse().map_err(|_| FileProblem::syntax("a unit such as `millimeter`", quoted(&value)))
         }
     }
 }
 
-fn id(element: &BytesStart<'_>, name: &[u8]) -> Result<u32, ReadProblem> {
+fn id(element: &BytesStart<'_>, name: &[u8]) -> Result<u32, FileProblem> {
     whole(&needed(element, name)?, "the number of an object")
 }
 
-fn whole(value: &[u8], expected: &str) -> Result<u32, ReadProblem> {
+fn whole(value: &[u8], expected: &str) -> Result<u32, FileProblem> {
     let found = integer(value.trim_ascii()).and_then(|number| u32::try_from(number).ok());
-    found.ok_or_else(|| ReadProblem::syntax(expected, quoted(value)))
+    found.ok_or_else(|| FileProblem::syntax(expected, quoted(value)))
 }
 
-fn new_object(element: &BytesStart<'_>) -> Result<Object, ReadProblem> {
+fn new_object(element: &BytesStart<'_>) -> Result<Object, FileProblem> {
     let number = |name| attribute(element, name).map(|value| whole(&value, "the number of a property")).transpose();
     let entry = number(b"pindex")?.unwrap_or_default();
     let default = number(b"pid")?.map(|group| Property { group, entries: [entry; 3] });
@@ -227,7 +213,7 @@ fn new_object(element: &BytesStart<'_>) -> Result<Object, ReadProblem> {
 
 /// What a triangle has of its own: an entry for each corner, or one for all, of a group that the object names if the triangle
 /// does not.
-fn property(element: &BytesStart<'_>, default: Option<Property>) -> Result<Option<Property>, ReadProblem> {
+fn property(element: &BytesStart<'_>, default: Option<Property>) -> Result<Option<Property>, FileProblem> {
     let mut group = default.map(|property| property.group);
     let mut entries = [None; 3];
     let mut attributes = element.attributes();
@@ -249,9 +235,9 @@ fn property(element: &BytesStart<'_>, default: Option<Property>) -> Result<Optio
 }
 
 /// `#RRGGBB` or `#RRGGBBAA`.
-fn colour(element: &BytesStart<'_>, name: &[u8]) -> Result<Rgba, ReadProblem> {
+fn colour(element: &BytesStart<'_>, name: &[u8]) -> Result<Rgba, FileProblem> {
     let value = needed(element, name)?;
-    let fail = || ReadProblem::syntax("a colour such as `#FF8000` or `#FF8000FF`", quoted(&value));
+    let fail = || FileProblem::syntax("a colour such as `#FF8000` or `#FF8000FF`", quoted(&value));
     let digits = value.trim_ascii().strip_prefix(b"#").filter(|d| matches!(d.len(), 6 | 8)).ok_or_else(fail)?;
     let mut rgba = [255; 4];
     for (channel, pair) in rgba.iter_mut().zip(digits.chunks_exact(2)) {
@@ -261,16 +247,16 @@ fn colour(element: &BytesStart<'_>, name: &[u8]) -> Result<Rgba, ReadProblem> {
     Ok(rgba)
 }
 
-fn coordinate(value: &[u8]) -> Result<f64, ReadProblem> {
-    number(value.trim_ascii()).ok_or_else(|| ReadProblem::syntax("a coordinate", quoted(value)))
+fn coordinate(value: &[u8]) -> Result<f64, FileProblem> {
+    number(value.trim_ascii()).ok_or_else(|| FileProblem::syntax("a coordinate", quoted(value)))
 }
 
-fn finite(value: &[u8]) -> Result<f64, ReadProblem> {
+fn finite(value: &[u8]) -> Result<f64, FileProblem> {
     let found = coordinate(value)?;
-    if found.is_finite() { Ok(found) } else { Err(ReadProblem::NotFinite { found: quoted(value) }) }
+    if found.is_finite() { Ok(found) } else { Err(FileProblem::NotFinite { found: quoted(value) }) }
 }
 
-fn vertex(element: &BytesStart<'_>) -> Result<DVec3, ReadProblem> {
+fn vertex(element: &BytesStart<'_>) -> Result<DVec3, FileProblem> {
     let mut p = DVec3::ZERO;
     for (k, name) in [b"x", b"y", b"z"].into_iter().enumerate() {
         p[k] = coordinate(&needed(element, name)?)?;
@@ -278,19 +264,19 @@ fn vertex(element: &BytesStart<'_>) -> Result<DVec3, ReadProblem> {
     Ok(p)
 }
 
-fn triangle(element: &BytesStart<'_>, count: usize) -> Result<[u32; 3], ReadProblem> {
+fn triangle(element: &BytesStart<'_>, count: usize) -> Result<[u32; 3], FileProblem> {
     let mut t = [0; 3];
     for (v, name) in t.iter_mut().zip([b"v1", b"v2", b"v3"]) {
         let value = needed(element, name)?;
         let index =
-            integer(value.trim_ascii()).ok_or_else(|| ReadProblem::syntax("a vertex number", quoted(&value)))?;
+            integer(value.trim_ascii()).ok_or_else(|| FileProblem::syntax("a vertex number", quoted(&value)))?;
         let in_range = u32::try_from(index).ok().filter(|&v| (v as usize) < count);
-        *v = in_range.ok_or_else(|| ReadProblem::vertex(index, count))?;
+        *v = in_range.ok_or_else(|| FileProblem::vertex(index, count))?;
     }
     Ok(t)
 }
 
-fn placed(element: &BytesStart<'_>) -> Result<Placed, ReadProblem> {
+fn placed(element: &BytesStart<'_>) -> Result<Placed, FileProblem> {
     let transform = match attribute(element, b"transform") {
         Some(value) => transform(&value)?,
         None => DAffine3::IDENTITY,
@@ -300,9 +286,9 @@ fn placed(element: &BytesStart<'_>) -> Result<Placed, ReadProblem> {
 }
 
 /// Twelve numbers: the images of the three axes, then of the origin.
-fn transform(value: &[u8]) -> Result<DAffine3, ReadProblem> {
+fn transform(value: &[u8]) -> Result<DAffine3, FileProblem> {
     let numbers = Words::new(value).map(finite).collect::<Result<Vec<_>, _>>()?;
     let numbers: [f64; 12] =
-        numbers.try_into().map_err(|_| ReadProblem::syntax("twelve numbers of a transform", quoted(value)))?;
+        numbers.try_into().map_err(|_| FileProblem::syntax("twelve numbers of a transform", quoted(value)))?;
     Ok(DAffine3::from_cols_array(&numbers))
 }

@@ -1,14 +1,14 @@
 //! The zip package: finding the models in it, and unpacking no more than the file justifies.
 
-use std::io::{self, BufReader, Cursor, Read};
+use std::io::{self, Cursor, Read};
 
 use quick_xml::events::Event;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use super::super::error::{Place, ReadError, ReadProblem};
+use super::super::error::{FileError, FileProblem, Location};
 use super::super::text::quoted;
-use super::model::{self, Model};
+use super::xml::{Xml, XmlError, attribute, text};
 
 /// Unpacked bytes that any package may have.
 const ALWAYS_ALLOWED: u64 = 64 << 20;
@@ -23,7 +23,7 @@ pub(super) struct Package<'a> {
 }
 
 impl<'a> Package<'a> {
-    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, ReadError> {
+    pub(super) fn open(bytes: &'a [u8]) -> Result<Self, FileError> {
         let archive = ZipArchive::new(Cursor::new(bytes)).map_err(|e| zip_problem(e, "a zip package"))?;
         let limit = ALWAYS_ALLOWED.max((bytes.len() as u64).saturating_mul(LARGEST_RATIO));
         Ok(Self { archive, left: limit, limit })
@@ -36,7 +36,7 @@ impl<'a> Package<'a> {
 
     /// The name of the model where the build is: the one that the package's relationships name,
     /// else the usual one, else any.
-    pub(super) fn root_model(&mut self) -> Result<String, ReadError> {
+    pub(super) fn root_model(&mut self) -> Result<String, FileError> {
         let named = match self.find("_rels/.rels") {
             Some(index) => self.unpack(index, "_rels/.rels", root_target)?,
             None => None,
@@ -46,15 +46,15 @@ impl<'a> Package<'a> {
         named
             .filter(|name| self.find(name).is_some())
             .or_else(|| usual().or_else(any).map(str::to_owned))
-            .ok_or_else(|| ReadError::item("package", self.no_model()))
+            .ok_or_else(|| FileError::item("package", self.no_model()))
     }
 
     /// What the package holds in place of a model.
-    fn no_model(&self) -> ReadProblem {
+    fn no_model(&self) -> FileProblem {
         const SHOWN: usize = 3;
         let has = |start: &str| self.archive.file_names().any(|name| name.starts_with(start));
         if ["word/", "xl/", "ppt/"].into_iter().any(has) {
-            return ReadProblem::Unsupported(
+            return FileProblem::Unsupported(
                 "an Office document, not a 3MF package; give the file of the model".into(),
             );
         }
@@ -63,7 +63,7 @@ impl<'a> Package<'a> {
         let more = if names.len() > SHOWN { ", …" } else { "" };
         let shown: Vec<String> = names.iter().take(SHOWN).map(|name| quoted(name.as_bytes())).collect();
         let held = if names.is_empty() { "nothing".to_owned() } else { shown.join(", ") + more };
-        ReadProblem::Unsupported(format!(
+        FileProblem::Unsupported(format!(
             "a ZIP archive without a 3D model (3D/3dmodel.model), so no 3MF package; it holds {held}: unpack it and give the mesh in it"
         ))
     }
@@ -81,8 +81,8 @@ impl<'a> Package<'a> {
         &mut self,
         name: &str,
         parse: impl FnOnce(&mut Xml<'_>) -> Result<T, XmlError>,
-    ) -> Result<T, ReadError> {
-        let none = || ReadError::item("package", ReadProblem::syntax(format!("the file {name}"), "none"));
+    ) -> Result<T, FileError> {
+        let none = || FileError::item("package", FileProblem::syntax(format!("the file {name}"), "none"));
         let index = self.find(name).ok_or_else(none)?;
         self.unpack(index, name, parse)
     }
@@ -94,10 +94,6 @@ impl<'a> Package<'a> {
         let mut bytes = Vec::new();
         Capped { inner: file, left: &mut self.left }.read_to_end(&mut bytes).map_err(|error| error.to_string())?;
         Ok(bytes)
-    }
-
-    pub(super) fn read_model(&mut self, name: &str) -> Result<Model, ReadError> {
-        self.read_xml(name, |reader| model::parse(reader, name))
     }
 
     /// Names of a package start with a slash in references and without in the archive, and do not
@@ -115,53 +111,19 @@ impl<'a> Package<'a> {
         index: usize,
         name: &str,
         parse: impl FnOnce(&mut Xml<'_>) -> Result<T, XmlError>,
-    ) -> Result<T, ReadError> {
+    ) -> Result<T, FileError> {
         let limit = self.limit;
         let file = self.archive.by_index(index).map_err(|e| zip_problem(e, name))?;
         let capped = Capped { inner: file, left: &mut self.left };
-        let mut xml = quick_xml::Reader::from_reader(BufReader::new(Box::new(capped) as Box<dyn Read>));
-        xml.config_mut().expand_empty_elements = true;
-        let mut xml = Xml { reader: xml, buffer: Vec::new() };
+        let mut xml = Xml::new(capped);
         parse(&mut xml).map_err(|error| {
-            let byte = xml.reader.buffer_position();
+            let byte = xml.position();
             let problem = match error {
                 XmlError::Problem(problem) => problem,
                 XmlError::Xml(error) => xml_problem(error, limit),
             };
-            ReadError::at(Place::Part { name: name.to_owned(), byte }, problem)
+            FileError::at(Location::Part { name: name.to_owned(), byte }, problem)
         })
-    }
-}
-
-/// An XML file being read, event by event.
-pub(super) struct Xml<'a> {
-    reader: quick_xml::Reader<BufReader<Box<dyn Read + 'a>>>,
-    buffer: Vec<u8>,
-}
-
-impl Xml<'_> {
-    /// The next event.
-    pub(super) fn event(&mut self) -> Result<Event<'_>, XmlError> {
-        self.buffer.clear();
-        Ok(self.reader.read_event_into(&mut self.buffer)?)
-    }
-}
-
-/// What goes wrong within an XML file.
-pub(super) enum XmlError {
-    Problem(ReadProblem),
-    Xml(quick_xml::Error),
-}
-
-impl From<quick_xml::Error> for XmlError {
-    fn from(error: quick_xml::Error) -> Self {
-        Self::Xml(error)
-    }
-}
-
-impl From<ReadProblem> for XmlError {
-    fn from(problem: ReadProblem) -> Self {
-        Self::Problem(problem)
     }
 }
 
@@ -183,21 +145,21 @@ impl<R: Read> Read for Capped<'_, R> {
     }
 }
 
-fn xml_problem(error: quick_xml::Error, limit: u64) -> ReadProblem {
+fn xml_problem(error: quick_xml::Error, limit: u64) -> FileProblem {
     match &error {
         quick_xml::Error::Io(io) if io.get_ref().is_some_and(|inner| inner.is::<Burst>()) => {
-            ReadProblem::TooLarge { what: "unpacked bytes", limit }
+            FileProblem::TooLarge { what: "unpacked bytes", limit }
         }
-        _ => ReadProblem::syntax("sound XML", error.to_string()),
+        _ => FileProblem::syntax("sound XML", error.to_string()),
     }
 }
 
-fn zip_problem(error: ZipError, what: &str) -> ReadError {
+fn zip_problem(error: ZipError, what: &str) -> FileError {
     let problem = match error {
-        ZipError::UnsupportedArchive(why) => ReadProblem::Unsupported(format!("the zip package cannot be read: {why}")),
-        other => ReadProblem::syntax("a sound zip package", other.to_string()),
+        ZipError::UnsupportedArchive(why) => FileProblem::Unsupported(format!("the zip package cannot be read: {why}")),
+        other => FileProblem::syntax("a sound zip package", other.to_string()),
     };
-    ReadError::item(what, problem)
+    FileError::item(what, problem)
 }
 
 /// The target of the first relationship to a 3D model.
@@ -206,11 +168,11 @@ fn root_target(xml: &mut Xml<'_>) -> Result<Option<String>, XmlError> {
         match xml.event()? {
             Event::Eof => return Ok(None),
             Event::Start(element) if element.local_name().as_ref() == b"Relationship" => {
-                let kind = model::attribute(&element, b"Type").unwrap_or_default();
+                let kind = attribute(&element, b"Type").unwrap_or_default();
                 if kind.trim_ascii_end().ends_with(b"/3dmodel")
-                    && let Some(target) = model::attribute(&element, b"Target")
+                    && let Some(target) = attribute(&element, b"Target")
                 {
-                    return Ok(Some(model::text(&target)));
+                    return Ok(Some(text(&target)));
                 }
             }
             _ => {}

@@ -6,10 +6,10 @@ use std::ops::RangeInclusive;
 
 use quick_xml::events::{BytesStart, Event};
 
-use super::super::error::ReadProblem;
+use super::super::error::FileProblem;
 use super::super::text::{integer, quoted};
-use super::model::{attribute, text};
-use super::package::{Package, Xml, XmlError};
+use super::package::Package;
+use super::xml::{Xml, XmlError, attribute, text};
 
 /// What a piece of an object is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -178,7 +178,7 @@ struct Piece {
 }
 
 impl Piece {
-    fn of(element: &BytesStart<'_>) -> Result<Self, ReadProblem> {
+    fn of(element: &BytesStart<'_>) -> Result<Self, FileProblem> {
         let role = attribute(element, b"subtype").map(|value| text(&value));
         let [id, first, last] = [number(element, b"id")?, number(element, b"firstid")?, number(element, b"lastid")?];
         Ok(Self { id, first, last, role, ..Self::default() })
@@ -195,8 +195,8 @@ impl Piece {
     }
 }
 
-fn number(element: &BytesStart<'_>, name: &[u8]) -> Result<Option<usize>, ReadProblem> {
+fn number(element: &BytesStart<'_>, name: &[u8]) -> Result<Option<usize>, FileProblem> {
     let Some(value) = attribute(element, name) else { return Ok(None) };
     let found = integer(value.trim_ascii()).and_then(|number| usize::try_from(number).ok());
-    found.map(Some).ok_or_else(|| ReadProblem::syntax("a whole number", quoted(&value)))
+    found.map(Some).ok_or_else(|| FileProblem::syntax("a whole number", quoted(&value)))
 }

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use super::super::soup::Soup;
 use super::super::texture::Gallery;
-use super::{Inherited, Models};
+use super::models::{Inherited, Models};
+
 use crate::io::Material;
 
 /// The images that triangles have, each a material of its own.

@@ -4,20 +4,19 @@ use glam::IVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick};
+use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick, voxel_in_brick};
 use crate::mesh::edges::Union;
 use crate::morphology::closed::{own_distance, unchanged};
-use crate::morphology::{Balls, Body, MorphologyError, around};
+use crate::morphology::{Balls, Body, OffsetError, around};
 use crate::progress::Progress;
-use crate::vote::voxel_in_brick;
 
 /// The number of no voxel.
 const NONE: u32 = u32::MAX;
 
 /// The filled voxels of a lattice.
 pub(super) struct Fill {
-    /// Distance to the solid, h.
-    pub own: Grid<f32>,
+    /// Distance to the solid, counted in voxels.
+    own: Grid<f32>,
     /// The filled voxels, brick by brick.
     voxels: Vec<IVec3>,
     /// Where each of them stands in that list; [`NONE`] for others.
@@ -25,7 +24,7 @@ pub(super) struct Fill {
 }
 
 /// Filled voxels that touch each other by faces, edges or corners.
-pub(super) struct Part {
+pub(super) struct FilledPart {
     /// The voxels, brick by brick.
     pub voxels: Vec<IVec3>,
     /// Distance of each from the solid, h.
@@ -42,9 +41,10 @@ impl Fill {
         balls: &Balls<'_>,
         lattice: &Lattice,
         progress: &Progress,
-    ) -> Result<Self, MorphologyError> {
+    ) -> Result<Self, OffsetError> {
         let own = own_distance(original, balls.radius, lattice, progress)?;
-        let closing = balls.field(&own, lattice, progress)?;
+        let closing = balls.field(&own, progress)?.grid;
+        let own = own.grid;
         let least = (unchanged(balls.radius, lattice.h) / lattice.h) as f32;
         let of_brick = |(values, &brick): (&[f32; BRICK_VOXELS], &IVec3)| {
             let voxels = values.iter().enumerate().filter(|(_, own)| **own > 0.0);
@@ -67,7 +67,7 @@ impl Fill {
     }
 
     /// The connected parts, in the order of their first voxels.
-    pub(super) fn parts(&self) -> Vec<Part> {
+    pub(super) fn parts(&self) -> Vec<FilledPart> {
         let mut sets = Union::new(self.voxels.len());
         for (n, &voxel) in (0..).zip(&self.voxels) {
             for near in around(voxel).map(|v| self.index.get(v)).filter(|&near| near < n) {
@@ -87,9 +87,9 @@ impl Fill {
         members.into_par_iter().map(|voxels| self.part(voxels)).collect()
     }
 
-    fn part(&self, voxels: Vec<IVec3>) -> Part {
+    fn part(&self, voxels: Vec<IVec3>) -> FilledPart {
         let open = |v: IVec3| self.own.get(v) > 0.0 && self.index.get(v) == NONE;
-        Part {
+        FilledPart {
             clearance: voxels.iter().map(|&v| f64::from(self.own.get(v))).collect(),
             mouth: voxels.iter().map(|&v| sides(v).any(open)).collect(),
             index: voxels.iter().copied().zip(0..).collect(),
@@ -98,9 +98,9 @@ impl Fill {
     }
 
     /// For each voxel of `parts`, and for those outside of the solid beside them, the number of its part, from 1.
-    pub(super) fn numbered<'a>(&self, parts: impl Iterator<Item = &'a Part>) -> Grid<u32> {
+    pub(super) fn numbered<'a>(&self, parts: impl Iterator<Item = &'a FilledPart>) -> Grid<u32> {
         let mut numbers = Grid::filled(self.own.bricks.clone(), 0, 0, 0);
-        let parts: Vec<&Part> = parts.collect();
+        let parts: Vec<&FilledPart> = parts.collect();
         for (number, part) in (1..).zip(&parts) {
             part.voxels.iter().for_each(|&voxel| set(&mut numbers, voxel, number));
         }
@@ -115,7 +115,7 @@ impl Fill {
     }
 }
 
-impl Part {
+impl FilledPart {
     /// The member at `voxel`.
     pub(super) fn at(&self, voxel: IVec3) -> Option<u32> {
         self.index.get(&voxel).copied()

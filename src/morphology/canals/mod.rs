@@ -8,30 +8,30 @@ mod fill;
 mod passage;
 mod topology;
 
-use glam::{DVec3, IVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::closed::{BESIDE, samples};
-use super::{Balls, Body, Centres, MorphologyError, corners};
+use super::{Balls, Body, Centres, OffsetError, Region};
 use crate::lattice::{Grid, Lattice};
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::Progress;
-use fill::{Fill, Part};
+use fill::{Fill, FilledPart};
 
-/// What a canal is.
+/// Where a canal leads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CanalKind {
-    /// It leads through: filling it takes handles away.
+    /// The canal leads through the solid: filling it takes handles away.
     Tunnel,
-    /// It ends blindly, half again deeper than wide: a narrow hole, a groove, a crack.
+    /// The canal ends blindly, half again deeper than wide: a narrow hole, a groove, a crack.
     Pit,
-    /// It lies between two bodies, which filling it joins.
+    /// The canal lies between two bodies, which filling it joins.
     Gap,
-    /// It leads into a wide chamber, which filling it shuts.
+    /// The canal leads into a wide chamber, which filling it shuts.
     Neck,
-    /// It is shut already.
+    /// The space is shut already.
     Cavity,
 }
 
@@ -47,12 +47,12 @@ impl std::fmt::Display for CanalKind {
     }
 }
 
-/// One canal; all in model units.
+/// One canal. All its measures are in model units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Canal {
-    /// Its number, from 1: the widest first.
+    /// The number of the canal, counted from 1; the widest has the lowest.
     pub number: u32,
-    /// What it is.
+    /// Where the canal leads, which decides what filling it does.
     pub kind: CanalKind,
     /// Diameter of the largest ball that passes (that goes halfway in, for a pit; that fits, for a cavity).
     pub diameter: f64,
@@ -68,9 +68,9 @@ pub struct Canal {
 
 /// The canals of a solid.
 pub struct Canals {
-    /// Them, by their numbers.
+    /// All canals in the order of their numbers, the widest first.
     pub list: Vec<Canal>,
-    /// Shallow places that the closing rounds: inner edges and dents.
+    /// Number of shallow places that the closing rounds: inner edges and dents.
     pub roundings: usize,
     /// For each voxel the number of the canal that it belongs to, or that it borders on; 0: none.
     of: Grid<u32>,
@@ -98,25 +98,6 @@ impl Canals {
     }
 }
 
-/// Voxels of some canals.
-pub struct Region<'a> {
-    of: &'a Grid<u32>,
-    chosen: Vec<bool>,
-}
-
-impl Region<'_> {
-    /// Whether `voxel` is one of them.
-    pub fn holds(&self, voxel: IVec3) -> bool {
-        self.chosen[self.of.get(voxel) as usize]
-    }
-
-    /// Whether one of the voxels around `p` (lattice coordinates) is one of them.
-    pub(super) fn is_beside(&self, p: DVec3) -> bool {
-        let low = p.floor().as_ivec3();
-        corners().any(|corner| self.holds(low + corner))
-    }
-}
-
 /// The canals that a closing of the solid `original` by these balls fills.
 ///
 /// # Errors
@@ -126,20 +107,20 @@ pub fn canals(
     (balls, centres): (&Balls<'_>, &Centres),
     lattice: &Lattice,
     progress: &Progress,
-) -> Result<Canals, MorphologyError> {
+) -> Result<Canals, OffsetError> {
     let fill = Fill::new(original, balls, lattice, progress)?;
     let shells = [&topology::shells(original.mesh), &centres.spaces];
     let parts = fill.parts();
-    let judge = |part: &Part| {
+    let judge = |part: &FilledPart| {
         progress.check()?;
         let changes = topology::changes(part, &fill, [original, &balls.centres], shells, lattice);
         let canal = passage::measure(part, &changes, original.distance(), lattice);
         // Where a ball passes halfway in all the same, only the edges of a wide place are rounded.
         Ok(canal.filter(|canal| canal.diameter < 2.0 * balls.radius))
     };
-    let judged: Vec<Option<Canal>> = parts.par_iter().map(judge).collect::<Result<_, MorphologyError>>()?;
+    let judged: Vec<Option<Canal>> = parts.par_iter().map(judge).collect::<Result<_, OffsetError>>()?;
     let roundings = judged.iter().filter(|canal| canal.is_none()).count();
-    let mut found: Vec<(Canal, &Part)> =
+    let mut found: Vec<(Canal, &FilledPart)> =
         judged.into_iter().zip(&parts).filter_map(|(canal, part)| Some((canal?, part))).collect();
     found.sort_by(|a, b| b.0.diameter.total_cmp(&a.0.diameter));
     (1..).zip(&mut found).for_each(|(number, (canal, _))| canal.number = number);

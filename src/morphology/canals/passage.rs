@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
-use super::fill::Part;
+use super::fill::FilledPart;
 use super::topology::Changes;
 use super::{Canal, CanalKind};
 use crate::lattice::Lattice;
@@ -37,7 +37,12 @@ const DEEP: f64 = 1.5;
 const ROUNDS: usize = 8;
 
 /// The part as a canal; `None` when it is only the rounding of an inner edge.
-pub(super) fn measure(part: &Part, changes: &Changes, distance: &ExactDistance, lattice: &Lattice) -> Option<Canal> {
+pub(super) fn measure(
+    part: &FilledPart,
+    changes: &Changes,
+    distance: &ExactDistance,
+    lattice: &Lattice,
+) -> Option<Canal> {
     let mouths = mouths(part);
     let depth = shortest(part, |n| part.mouth[n as usize], |_| true);
     let farthest = depth.far.iter().copied().filter(|far| far.is_finite()).fold(0.0, f64::max);
@@ -74,7 +79,7 @@ pub(super) fn measure(part: &Part, changes: &Changes, distance: &ExactDistance, 
 
 /// For each member that borders on the open the number of its mouth. Mouths that lie side by side and look the same way
 /// are one: the surface of a ball, cut into voxels, may fall apart.
-fn mouths(part: &Part) -> Vec<Option<u32>> {
+fn mouths(part: &FilledPart) -> Vec<Option<u32>> {
     let count = part.voxels.len();
     let mut sets = Union::new(count);
     let members: Vec<u32> = (0..count as u32).filter(|&n| part.mouth[n as usize]).collect();
@@ -124,7 +129,7 @@ struct Patch {
 }
 
 impl Patch {
-    fn add(&mut self, part: &Part, n: u32) {
+    fn add(&mut self, part: &FilledPart, n: u32) {
         let p = part.voxels[n as usize].as_dvec3();
         self.sum += p;
         self.count += 1.0;
@@ -140,7 +145,7 @@ impl Patch {
 }
 
 /// The widest way between two mouths.
-fn through(part: &Part, mouths: &[Option<u32>]) -> Option<Vec<u32>> {
+fn through(part: &FilledPart, mouths: &[Option<u32>]) -> Option<Vec<u32>> {
     // The members from the widest on, until two mouths hang together.
     let mut order: Vec<u32> = (0..part.voxels.len() as u32).collect();
     order.sort_by(|&a, &b| part.clearance[b as usize].total_cmp(&part.clearance[a as usize]));
@@ -165,7 +170,7 @@ fn through(part: &Part, mouths: &[Option<u32>]) -> Option<Vec<u32>> {
 }
 
 /// The widest way from a member that `from` holds of to one that `to` holds of, wherever it can be wide kept to the middle.
-fn passage(part: &Part, from: impl Fn(u32) -> bool, to: impl Fn(u32) -> bool) -> Option<Vec<u32>> {
+fn passage(part: &FilledPart, from: impl Fn(u32) -> bool, to: impl Fn(u32) -> bool) -> Option<Vec<u32>> {
     let level = bottleneck(part, &from, &to)?;
     let found = shortest(part, from, |n| part.clearance[n as usize] >= level - BESIDE);
     let reached = |n: &u32| to(*n) && found.cost[*n as usize].is_finite();
@@ -175,7 +180,7 @@ fn passage(part: &Part, from: impl Fn(u32) -> bool, to: impl Fn(u32) -> bool) ->
 }
 
 /// The largest clearance that all members of some way have.
-fn bottleneck(part: &Part, from: impl Fn(u32) -> bool, to: impl Fn(u32) -> bool) -> Option<f64> {
+fn bottleneck(part: &FilledPart, from: impl Fn(u32) -> bool, to: impl Fn(u32) -> bool) -> Option<f64> {
     let clearance = |n: u32| part.clearance[n as usize];
     let mut best = vec![f64::NEG_INFINITY; part.voxels.len()];
     // Clearances are positive, so that their bits are in their order.
@@ -222,7 +227,7 @@ impl Ways {
 }
 
 /// The cheapest ways over members that `allowed` holds of.
-fn shortest(part: &Part, from: impl Fn(u32) -> bool, allowed: impl Fn(u32) -> bool) -> Ways {
+fn shortest(part: &FilledPart, from: impl Fn(u32) -> bool, allowed: impl Fn(u32) -> bool) -> Ways {
     let count = part.voxels.len();
     let widest = part.clearance.iter().copied().fold(0.0, f64::max);
     let mut ways =
@@ -251,7 +256,7 @@ fn shortest(part: &Part, from: impl Fn(u32) -> bool, allowed: impl Fn(u32) -> bo
 }
 
 /// The longest of the way from the widest member to all others.
-fn inner(part: &Part) -> Option<Vec<u32>> {
+fn inner(part: &FilledPart) -> Option<Vec<u32>> {
     let count = part.voxels.len() as u32;
     let widest = (0..count).max_by(|&a, &b| part.clearance[a as usize].total_cmp(&part.clearance[b as usize]))?;
     let ways = shortest(part, |n| n == widest, |_| true);

@@ -2,7 +2,7 @@
 
 use glam::IVec3;
 
-use super::fill::{Fill, Part, sides};
+use super::fill::{Fill, FilledPart, sides};
 use crate::lattice::Lattice;
 use crate::mesh::TriMesh;
 use crate::mesh::edges::Union;
@@ -28,7 +28,7 @@ pub(super) fn shells(mesh: &TriMesh) -> Vec<u32> {
 /// Bodies, cavities and handles enter the Euler number with signs +, + and −; the voxels give it, the shells beside the
 /// part give the first two.
 pub(super) fn changes(
-    part: &Part,
+    part: &FilledPart,
     fill: &Fill,
     bodies: [&Body<'_>; 2],
     shells: [&Vec<u32>; 2],
@@ -52,7 +52,7 @@ pub(super) fn changes(
 
 /// By how much the Euler number of the solid's voxels, joined through faces, grows with the part: voxels less pairs plus
 /// squares less cubes.
-fn euler_change(part: &Part, solid: &impl Fn(IVec3) -> bool) -> i64 {
+fn euler_change(part: &FilledPart, solid: &impl Fn(IVec3) -> bool) -> i64 {
     let mut change = 0;
     for (n, &voxel) in (0u32..).zip(&part.voxels) {
         // Each set of voxels counts at the last of its members in the part.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::sources::Sources;
-use super::{OperandReport, not_filled};
+use super::{FieldError, OperandReport};
 use crate::field::algebra::{self, complement, difference, intersection, symmetric_difference, union};
 use crate::field::blend::{blend_difference, blend_intersection, blend_union};
 use crate::field::blob::{self, BlobOptions};
@@ -16,10 +16,11 @@ use crate::field::{
     Body, Extent, Field, FillOptions, MeshField, Placement, PointField, Sampled, Shared, Solid, blur_band, blurred,
     fill, material, placed, scattered,
 };
-use crate::lattice::Lattice;
-use crate::mesh::{Bounds, TriMesh, ValidateOptions, validate};
+use crate::lattice::DistanceField;
+use crate::mesh::{Bounds, ValidateOptions, validate};
 use crate::pipeline::{
-    DistanceMethod, DistanceOptions, DistanceSign, Error, Options, TriangleSource, VoxelSize, distance, prepare, repair,
+    DistanceMethod, DistanceOptions, DistanceSign, Operand, Options, TriangleSource, VoxelSize, distance, repair,
+    sizing,
 };
 use crate::progress::Progress;
 use crate::sdf::exact::PointSign;
@@ -28,9 +29,9 @@ use crate::sdf::exact::PointSign;
 const KNOWN: f64 = 0.1;
 
 /// What a name of an expression stands for.
-pub enum Operand {
+pub enum FieldOperand<'a> {
     /// A mesh, which may be broken.
-    Mesh(TriMesh),
+    Mesh(Operand<'a>),
     /// A field from a file.
     Grid(Arc<Sampled>),
 }
@@ -46,7 +47,7 @@ pub struct Built {
     pub(super) sources: Sources,
 }
 
-impl Operand {
+impl FieldOperand<'_> {
     /// Bytes of memory that its lattice takes; none for a mesh.
     pub fn memory(&self) -> u64 {
         match self {
@@ -58,7 +59,7 @@ impl Operand {
     /// The box around it, model units.
     pub fn bounds(&self) -> Option<Bounds> {
         match self {
-            Self::Mesh(mesh) => mesh.bounds(),
+            Self::Mesh(operand) => operand.mesh.bounds(),
             Self::Grid(grid) => grid.extent().bounds(),
         }
     }
@@ -66,7 +67,7 @@ impl Operand {
 
 /// Makes fields of trees over the same operands; what it has made of an operand it keeps.
 pub struct FieldBuilder<'a> {
-    operands: &'a [Operand],
+    operands: &'a [FieldOperand<'a>],
     options: &'a Options,
     progress: &'a Progress,
     parts: Option<Bounds>,
@@ -79,7 +80,7 @@ pub struct FieldBuilder<'a> {
 
 impl<'a> FieldBuilder<'a> {
     /// Ready to make fields of `operands`. A mesh that is no valid solid will be repaired first, as `options` say.
-    pub fn new(operands: &'a [Operand], options: &'a Options, progress: &'a Progress) -> Self {
+    pub fn new(operands: &'a [FieldOperand<'a>], options: &'a Options, progress: &'a Progress) -> Self {
         Self {
             operands,
             options,
@@ -94,15 +95,15 @@ impl<'a> FieldBuilder<'a> {
     /// The field that `tree` says.
     ///
     /// # Errors
-    /// See [`Error`].
-    pub fn build(&mut self, tree: &Node<Value>) -> Result<Built, Error> {
-        self.parts = self.operands.iter().filter_map(Operand::bounds).reduce(|a, b| a.union(&b));
+    /// See [`FieldError`].
+    pub fn build(&mut self, tree: &Node<Value>) -> Result<Built, FieldError> {
+        self.parts = self.operands.iter().filter_map(FieldOperand::bounds).reduce(|a, b| a.union(&b));
         let field = self.node(tree)?;
         let operands = self.made.keys().map(|&(operand, made)| OperandReport { operand, made }).collect();
         Ok(Built { field, parts: self.parts, operands, sources: self.sources.clone() })
     }
 
-    fn node(&mut self, node: &Node<Value>) -> Result<Shared, Error> {
+    fn node(&mut self, node: &Node<Value>) -> Result<Shared, FieldError> {
         self.progress.check()?;
         match &node.kind {
             NodeKind::Name { operand, .. } => self.usual(*operand),
@@ -116,7 +117,7 @@ impl<'a> FieldBuilder<'a> {
         }
     }
 
-    fn call(&mut self, call: &Call<Value>, fields: Vec<Shared>) -> Result<Shared, Error> {
+    fn call(&mut self, call: &Call<Value>, fields: Vec<Shared>) -> Result<Shared, FieldError> {
         use Function as F;
         let length = |name: &str| call.length(name).unwrap_or_default();
         let number = |name: &str| call.number(name).unwrap_or_default();
@@ -159,14 +160,14 @@ impl<'a> FieldBuilder<'a> {
             F::Exact | F::Robust | F::Levels => None,
         };
         // The parser gives each call as many fields as it takes.
-        made.ok_or(Error::MissingOperand { operand: fields.len(), given: fields.len() })
+        made.ok_or(FieldError::MissingField)
     }
 
     /// An operand by its name: a grid as it is, a mesh by its exact distance, repaired first where it is no solid.
-    fn usual(&mut self, operand: usize) -> Result<Shared, Error> {
-        let mesh = match &self.operands[operand] {
-            Operand::Grid(grid) => return Ok(self.remember(operand, "grid", grid.clone())),
-            Operand::Mesh(mesh) => mesh,
+    fn usual(&mut self, operand: usize) -> Result<Shared, FieldError> {
+        let given = match &self.operands[operand] {
+            FieldOperand::Grid(grid) => return Ok(self.remember(operand, "grid", grid.clone())),
+            FieldOperand::Mesh(operand) => *operand,
         };
         if let Some(made) = self.made.get(&(operand, "repaired")) {
             return Ok(made.clone());
@@ -175,27 +176,26 @@ impl<'a> FieldBuilder<'a> {
             return self.exact(operand);
         }
         let options = ValidateOptions { self_intersections: true, weld: true };
-        if validate(mesh, &options, self.progress)?.is_valid() {
+        if validate(given.mesh, &options, self.progress)?.is_valid() {
             self.valid.insert(operand);
             return self.exact(operand);
         }
-        let classes = self.options.classes.get(operand).cloned().into_iter().collect();
-        let outcome = repair(mesh, &Options { classes, ..self.options.clone() }, self.progress)?;
+        let outcome = repair(given, self.options, self.progress)?;
         let origins = outcome.sources.iter().map(|source| match *source {
             TriangleSource::Operand { triangle, .. } => TriangleSource::Operand { operand: operand as u32, triangle },
             TriangleSource::Closed => TriangleSource::Closed,
         });
-        let source = self.sources.add(&outcome.mesh, origins);
-        let field = MeshField::new(&outcome.mesh, PointSign::Pseudonormal, source);
+        let source = self.sources.add(&outcome.solid, origins);
+        let field = MeshField::new(&outcome.solid, PointSign::Pseudonormal, source);
         Ok(self.remember(operand, "repaired", Arc::new(field)))
     }
 
-    fn special(&mut self, call: &Call<Value>) -> Result<Shared, Error> {
+    fn special(&mut self, call: &Call<Value>) -> Result<Shared, FieldError> {
         let Some(NodeKind::Name { operand, .. }) = call.fields.first().map(|field| &field.kind) else {
-            return Err(Error::MissingOperand { operand: 0, given: 0 });
+            return Err(FieldError::MissingField);
         };
         let operand = *operand;
-        let Operand::Mesh(mesh) = &self.operands[operand] else {
+        let FieldOperand::Mesh(Operand { mesh, .. }) = self.operands[operand] else {
             return self.usual(operand);
         };
         let (name, method, sign) = match call.function {
@@ -217,18 +217,14 @@ impl<'a> FieldBuilder<'a> {
             max_memory: self.options.max_memory,
         };
         let found = distance(mesh, &options, self.progress)?;
-        let mut grid = found.field;
-        let h = found.lattice.h as f32;
-        grid.values.iter_mut().flatten().for_each(|value| *value *= h);
-        (grid.inside, grid.outside) = (grid.inside * h, grid.outside * h);
-        Ok(self.remember(operand, name, Arc::new(Sampled::new(grid, found.lattice))))
+        Ok(self.remember(operand, name, Arc::new(Sampled::new(found.field))))
     }
 
-    fn exact(&mut self, operand: usize) -> Result<Shared, Error> {
+    fn exact(&mut self, operand: usize) -> Result<Shared, FieldError> {
         if let Some(made) = self.made.get(&(operand, "exact")) {
             return Ok(made.clone());
         }
-        let Operand::Mesh(mesh) = &self.operands[operand] else { return self.usual(operand) };
+        let FieldOperand::Mesh(Operand { mesh, .. }) = self.operands[operand] else { return self.usual(operand) };
         let origin = |triangle| TriangleSource::Operand { operand: operand as u32, triangle };
         let source = self.sources.add(mesh, (0..mesh.triangles.len() as u32).map(origin));
         let field = MeshField::new(mesh, PointSign::Pseudonormal, source);
@@ -240,42 +236,39 @@ impl<'a> FieldBuilder<'a> {
         field
     }
 
-    fn ramp(&self, call: &Call<Value>, (a, b): (Shared, Shared)) -> Result<Shared, Error> {
+    fn ramp(&self, call: &Call<Value>, (a, b): (Shared, Shared)) -> Result<Shared, FieldError> {
         let axis = call.axis("axis").map_or(2, |axis| axis.number());
         let extent = a.extent().or(b.extent()).bounds();
         let at = |name: &str| match (call.place(name), extent) {
             (Some(Place::At(at)), _) => Ok(at),
             (Some(Place::Share(share)), Some(extent)) => Ok(extent.min[axis] + share * extent.size()[axis]),
-            _ => Err(super::endless()),
+            _ => Err(FieldError::Endless),
         };
         let (from, to) = (at("from")?, at("to")?);
         if from == to {
-            let reason = format!("a ramp from {from} to {to} has no length");
-            return Err(Error::VoxelSize { reason });
+            return Err(FieldError::NoRamp { from, to });
         }
         Ok(algebra::ramp(a, b, axis, from, to))
     }
 
     /// The field over its own lattice, filled up to `band` from zero, or all of it.
-    fn sampled(&self, field: &Shared, h: f64, band: f64) -> Result<(crate::lattice::Grid<f32>, Lattice), Error> {
+    fn sampled(&self, field: &Shared, h: f64, band: f64) -> Result<DistanceField, FieldError> {
         let extent = super::shape_extent(field)?;
         let extent = Bounds { min: extent.min - band, max: extent.max + band };
-        let lattice = prepare::lattice(&extent, VoxelSize::Length(h))?;
+        let lattice = sizing::lattice(&extent, VoxelSize::Length(h))?;
         let options = FillOptions { band: Some(band), max_memory: self.options.max_memory };
-        let grid = fill(&**field, &lattice, &options, self.progress).map_err(not_filled)?;
-        Ok((grid, lattice))
+        Ok(fill(&**field, &lattice, &options, self.progress)?)
     }
 
-    fn blur(&self, field: &Shared, sigma: f64) -> Result<Shared, Error> {
+    fn blur(&self, field: &Shared, sigma: f64) -> Result<Shared, FieldError> {
         let extent = super::shape_extent(field)?;
-        let h = prepare::lattice(&extent, self.options.voxel)?.h;
-        let (grid, lattice) = self.sampled(field, h, blur_band(sigma) + 2.0 * h)?;
-        Ok(Arc::new(Sampled::new(blurred(&grid, &lattice, sigma, self.progress)?, lattice)))
+        let h = sizing::lattice(&extent, self.options.voxel)?.h;
+        let sharp = self.sampled(field, h, blur_band(sigma) + 2.0 * h)?;
+        Ok(Arc::new(Sampled::new(blurred(&sharp, sigma, self.progress)?)))
     }
 
-    fn coarse(&self, field: &Shared, voxel: f64) -> Result<Shared, Error> {
-        let (grid, lattice) = self.sampled(field, voxel, 4.0 * voxel)?;
-        Ok(Arc::new(Sampled::new(grid, lattice)))
+    fn coarse(&self, field: &Shared, voxel: f64) -> Result<Shared, FieldError> {
+        Ok(Arc::new(Sampled::new(self.sampled(field, voxel, 4.0 * voxel)?)))
     }
 
     fn body(&mut self, call: &Call<Value>) -> Shared {
@@ -285,17 +278,15 @@ impl<'a> FieldBuilder<'a> {
         field
     }
 
-    fn points(&self, call: &Call<Value>) -> Result<Shared, Error> {
-        let bounds = self.parts.ok_or_else(|| Error::NothingEnclosed {
-            reason: "points are scattered in the box of the operands and bodies before them, and there are none".into(),
-        })?;
+    fn points(&self, call: &Call<Value>) -> Result<Shared, FieldError> {
+        let bounds = self.parts.ok_or(FieldError::NoBox)?;
         let count = call.count("count").unwrap_or_default() as usize;
         Ok(Arc::new(PointField::new(&scattered(count, call.count("seed").unwrap_or_default(), &bounds))))
     }
 }
 
 /// A field elsewhere, larger or turned.
-fn moved(call: &Call<Value>, fields: &[Shared]) -> Result<Shared, Error> {
+fn moved(call: &Call<Value>, fields: &[Shared]) -> Result<Shared, FieldError> {
     let extent = |k: usize| super::shape_extent(&fields[k]);
     let middle = || extent(0).map(|bounds| (bounds.min + bounds.max) / 2.0);
     let length = |name: &str| call.length(name).unwrap_or_default();
@@ -309,8 +300,7 @@ fn moved(call: &Call<Value>, fields: &[Shared]) -> Result<Shared, Error> {
         Function::Align => {
             let (from, to) = (extent(0)?, extent(1)?);
             if [from, to].iter().any(|bounds| bounds.size().max_element() <= 0.0) {
-                let reason = "a shape without a size cannot be aligned";
-                return Err(Error::NothingEnclosed { reason: reason.into() });
+                return Err(FieldError::NoSize);
             }
             Placement::fitted(&from, &to)
         }
@@ -319,21 +309,20 @@ fn moved(call: &Call<Value>, fields: &[Shared]) -> Result<Shared, Error> {
     Ok(placed(fields[0].clone(), placement))
 }
 
-fn by_radii((a, b): (Shared, Shared), t: f64) -> Result<Shared, Error> {
+fn by_radii((a, b): (Shared, Shared), t: f64) -> Result<Shared, FieldError> {
     let radii = [algebra::depth(&a), algebra::depth(&b)];
     if radii.iter().all(|radius| *radius > 0.0) {
         return Ok(algebra::morph_by_radii([a, b], radii, t));
     }
     let endless = [&a, &b].iter().any(|field| field.extent() == Extent::Unbounded);
-    let reason = "a shape without an inside has no radius to be weighted by".into();
-    Err(if endless { super::endless() } else { Error::NothingEnclosed { reason } })
+    Err(if endless { FieldError::Endless } else { FieldError::NoRadius })
 }
 
 fn sampling(call: &Call<Value>) -> Sampling {
     Sampling::Drawn { count: call.count("samples").unwrap_or(64) as usize, seed: 0, mirrored: true }
 }
 
-fn filter(call: &Call<Value>, field: Shared) -> Result<Shared, Error> {
+fn filter(call: &Call<Value>, field: Shared) -> Result<Shared, FieldError> {
     let cap = call.length("cap").unwrap_or_default();
     let sigma = call.length("sigma");
     let kernel = match sigma {

@@ -7,22 +7,24 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-pub use build::{Built, FieldBuilder, Operand};
+pub use build::{Built, FieldBuilder, FieldOperand};
 
 use super::distance::DistanceOutcome;
 use super::frame::Frame;
-use super::morphology::volume;
+use super::offsets::volume;
+use super::stages::Stages;
 use super::{
-    DistanceReport, Dropped, Error, Options, Outcome, Report, TriangleCounts, TriangleSource, VoxelSize, prepare,
-    refine, stages,
+    BooleanError, DistanceError, DistanceReport, Draft, Dropped, LatticeError, LimitError, Options, Outcome, Report,
+    TriangleCounts, TriangleSource, VoxelSize, refine, sizing,
 };
+use crate::contour::Ground;
 use crate::digits;
 use crate::field::filter::FilterError;
 use crate::field::{Extent, Field, FillError, FillOptions, LevelError, Shared, fill, level};
 use crate::fit::{Facets, FitReport, fit};
 use crate::ldi::{Evidence, MAX_VOXELS};
-use crate::mesh::Bounds;
-use crate::progress::Progress;
+use crate::mesh::{Bounds, NotSolid, SolidError};
+use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::Band;
 
 /// A lattice that cuts a shape off grows by this part of the shape's extent.
@@ -34,6 +36,61 @@ const NEAR: f64 = 1e-3;
 const FAR: f64 = 0.1;
 /// A gradient shorter than this says nothing about how far the level is.
 const FLAT: f64 = 0.05;
+
+/// Why there is no field, or no surface of it.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FieldError {
+    /// Interrupted, or the deadline passed.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// The voxel size, or the band, cannot be used with these coordinates.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// More memory would be needed than allowed.
+    #[error(transparent)]
+    Limit(#[from] LimitError),
+    /// The shape has no inside.
+    #[error("the field is nowhere negative: nothing is inside")]
+    Nothing,
+    /// No voxel is inside.
+    #[error("the field is nowhere negative on the lattice: nothing is inside, or it is thinner than a voxel")]
+    NothingOnLattice,
+    /// The shape has no end.
+    #[error("the shape has no end: intersect it with one that has (`... & box(...)`)")]
+    Endless,
+    /// A ramp begins where it ends.
+    #[error("a ramp from {from} to {to} has no length")]
+    NoRamp {
+        /// Where it begins.
+        from: f64,
+        /// Where it ends.
+        to: f64,
+    },
+    /// A tree that no parser made: a call has fewer fields than its function takes.
+    #[error("a call has fewer fields than its function takes")]
+    MissingField,
+    /// A shape that is to be aligned has no size.
+    #[error("a shape without a size cannot be aligned")]
+    NoSize,
+    /// A shape that is to be weighted by its radius has none.
+    #[error("a shape without an inside has no radius to be weighted by")]
+    NoRadius,
+    /// Points are scattered where nothing is.
+    #[error("points are scattered in the box of the operands and bodies before them, and there are none")]
+    NoBox,
+    /// A filter cannot be.
+    #[error(transparent)]
+    Filter(#[from] FilterError),
+    /// An operand could not be repaired.
+    #[error(transparent)]
+    Repair(BooleanError),
+    /// The distance to an operand could not be found.
+    #[error(transparent)]
+    Distance(DistanceError),
+    /// What was made is not a valid solid. The fit sees to it that it is; without one, it may not be.
+    #[error(transparent)]
+    NotSolid(Box<NotSolid>),
+}
 
 /// What a field was made of, and what became of it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -62,44 +119,48 @@ pub struct OperandReport {
 /// The surface where the field is zero.
 ///
 /// # Errors
-/// See [`Error`]; [`Error::NothingEnclosed`] also for shapes without an end.
-pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> Result<(Outcome, FieldReport), Error> {
-    let mut stages = stages::Stages::new(progress);
+/// See [`FieldError`].
+pub fn field_surface(
+    built: &Built,
+    options: &Options,
+    progress: &Progress,
+) -> Result<(Outcome, FieldReport), FieldError> {
+    let mut stages = Stages::new(progress);
     stages.begin("field")?;
     let extent = shape_extent(&built.field)?;
     let h = field_spacing(built, options)?;
-    let frame = Frame::of_box(&extent, options);
+    let frame = Frame::of_box(&extent, &options.surface());
     let mut extent = frame.local_bounds(&extent);
     let field = &*frame.local_field(&built.field);
     let mut tries = 0;
     let (level, lattice) = loop {
-        let lattice = prepare::lattice(&extent, VoxelSize::Length(h))?;
-        let level = level(field, &lattice, options.max_memory, progress).map_err(no_level)?;
+        let lattice = sizing::lattice(&extent, VoxelSize::Length(h))?;
+        let level = level(field, &lattice, options.max_memory, progress)?;
         if !level.cut_off {
             break (level, lattice);
         }
         tries += 1;
         if tries == MOST_TRIES {
-            return Err(endless());
+            return Err(FieldError::Endless);
         }
         let room = MORE_ROOM * extent.size().max_element();
         extent = Bounds { min: extent.min - room, max: extent.max + room };
     };
     if level.contour.mesh.triangles.is_empty() {
-        let reason = "the field is nowhere negative on the lattice: nothing is inside, or it is thinner than a voxel";
-        return Err(Error::NothingEnclosed { reason: reason.into() });
+        return Err(FieldError::NothingOnLattice);
     }
     let mut contour = level.contour;
     let sources = &built.sources;
-    contour.vertices.iter_mut().zip(&level.facets).zip(0u32..).for_each(|((vertex, facet), n)| {
-        let own = sources.mesh.triangles.len() as u32 + n;
-        vertex.triangle = facet.and_then(|facet| sources.number(facet)).unwrap_or(own);
-    });
-    let wanted = |p: DVec3| off(field, p, lattice.h);
-    let source = &frame.local(std::slice::from_ref(&sources.mesh))[0];
-    let facets = Facets::new(source, level.planes).with_wanted(&wanted);
+    for (vertex, source) in contour.vertices.iter_mut().zip(&level.sources) {
+        if let Some(triangle) = source.and_then(|source| sources.number(source)) {
+            vertex.ground = Ground::Triangle(triangle);
+        }
+    }
+    let target = |p: DVec3| off(field, p, lattice.h);
+    let source = &*frame.local(&sources.mesh);
+    let facets = Facets::new(source, level.planes).with_target(&target);
     stages.begin("collapse")?;
-    let mut surface = refine::merged(contour, &facets, &lattice, options, progress)?;
+    let mut surface = refine::merged(contour, &facets, &lattice, &options.surface(), progress)?;
     let mut fitted = None;
     if let Some(options) = options.fit {
         stages.begin("fit")?;
@@ -107,7 +168,7 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         let (fit, report) = fit(&surface, &facets, &Evidence::default(), lattice.h, &options, progress)?;
         (surface, fitted) = (fit, Some(report));
     }
-    let source = |t: u32| sources.origin(surface.facet(&facets, t));
+    let source = |t: u32| sources.origin(surface.facet(&facets, t).and_then(|facet| facets.triangle(facet)));
     let origins: Vec<TriangleSource> = (0..surface.mesh.triangles.len() as u32).into_par_iter().map(source).collect();
     let made = origins.iter().filter(|source| **source == TriangleSource::Closed).count();
     let report = Report {
@@ -127,13 +188,14 @@ pub fn field_surface(built: &Built, options: &Options, progress: &Progress) -> R
         fit: fitted,
         smaller: Dropped::default(),
     };
-    Ok((frame.global(Outcome { mesh: surface.mesh, sources: origins, lattice, report }), account))
+    let draft = Draft { mesh: surface.mesh, sources: origins, lattice, report };
+    Ok((draft.global(&frame).judged(&[], progress)?, account))
 }
 
 /// How far a point is from the level, model units. Gradients cost more than values, and mostly the value tells enough.
 fn off(field: &dyn Field, p: DVec3, h: f64) -> f64 {
     let value = field.value(p).abs();
-    let least = value / field.steepness();
+    let least = value / field.lipschitz();
     if value < NEAR * h || least > FAR * h {
         return least.max(value.min(NEAR * h));
     }
@@ -155,18 +217,18 @@ pub enum FieldBand {
 /// The field over a lattice around the shape, or around the operands and bodies where the field is no shape.
 ///
 /// # Errors
-/// See [`Error`].
+/// See [`FieldError`].
 pub fn field_grid(
     built: &Built,
     band: FieldBand,
     options: &Options,
     progress: &Progress,
-) -> Result<DistanceOutcome, Error> {
-    let mut stages = stages::Stages::new(progress);
+) -> Result<DistanceOutcome, FieldError> {
+    let mut stages = Stages::new(progress);
     stages.begin("field")?;
-    let extent = built.field.extent().bounds().or(built.parts).ok_or_else(endless)?;
-    let frame = Frame::of_box(&extent, options);
-    let mut lattice = prepare::lattice(&frame.local_bounds(&extent), options.voxel)?;
+    let extent = built.field.extent().bounds().or(built.parts).ok_or(FieldError::Endless)?;
+    let frame = Frame::of_box(&extent, &options.surface());
+    let mut lattice = sizing::lattice(&frame.local_bounds(&extent), options.voxel)?;
     let h = lattice.h;
     let band = match band {
         FieldBand::Length(length) => Some(length),
@@ -176,27 +238,17 @@ pub fn field_grid(
     let room = (band.unwrap_or(0.0) / h).ceil();
     let most = f64::from(lattice.dims.max_element()) + 2.0 * room;
     if most.is_nan() || most >= f64::from(MAX_VOXELS) {
-        let reason = format!(
-            "a band of {} voxels makes a lattice of {} along a side, and at most {} are possible: \
-             use a narrower band, or a larger voxel",
-            digits::number(room),
-            digits::number(most),
-            digits::count(MAX_VOXELS as usize)
-        );
-        return Err(Error::VoxelSize { reason });
+        let band = format!("{} voxels", digits::number(room));
+        return Err(LatticeError::WideBand { band, along: most, or: "" }.into());
     }
     lattice.origin -= room * h;
     lattice.dims += 2 * IVec3::splat(room as i32);
     let wanted = FillOptions { band, max_memory: options.max_memory };
-    let mut grid = fill(&*frame.local_field(&built.field), &lattice, &wanted, progress).map_err(not_filled)?;
-    lattice = frame.global_lattice(lattice);
-    // The outcome holds distances in h.
-    let per_h = (1.0 / h) as f32;
-    grid.values.par_iter_mut().flatten().for_each(|value| *value *= per_h);
-    (grid.inside, grid.outside) = (grid.inside * per_h, grid.outside * per_h);
+    let mut field = fill(&*frame.local_field(&built.field), &lattice, &wanted, progress)?;
+    field.lattice = frame.global_lattice(lattice);
     let report = DistanceReport { stages: stages.finish(), ..DistanceReport::default() };
     let band = band.map_or(Band::Full, |band| Band::Within(band / h));
-    Ok(DistanceOutcome::described(grid, lattice, band, report))
+    Ok(DistanceOutcome::described(field, band, report))
 }
 
 /// The values of the field at points, model units: to paint a surface with.
@@ -210,11 +262,10 @@ pub fn field_values(field: &Shared, points: &[DVec3]) -> Vec<f64> {
 }
 
 /// The box that holds the shape.
-fn shape_extent(field: &Shared) -> Result<Bounds, Error> {
-    let nothing = || Error::NothingEnclosed { reason: "the field is nowhere negative: nothing is inside".into() };
+fn shape_extent(field: &Shared) -> Result<Bounds, FieldError> {
     match field.extent() {
-        Extent::Unbounded => Err(endless()),
-        extent => extent.bounds().ok_or_else(nothing),
+        Extent::Unbounded => Err(FieldError::Endless),
+        extent => extent.bounds().ok_or(FieldError::Nothing),
     }
 }
 
@@ -222,31 +273,53 @@ fn shape_extent(field: &Shared) -> Result<Bounds, Error> {
 ///
 /// # Errors
 /// Those of [`field_surface`].
-pub fn field_spacing(built: &Built, options: &Options) -> Result<f64, Error> {
-    Ok(prepare::lattice(&shape_extent(&built.field)?, options.voxel)?.h)
+pub fn field_spacing(built: &Built, options: &Options) -> Result<f64, FieldError> {
+    Ok(sizing::lattice(&shape_extent(&built.field)?, options.voxel)?.h)
 }
 
-fn endless() -> Error {
-    let reason = "the shape has no end: intersect it with one that has (`... & box(...)`)";
-    Error::NothingEnclosed { reason: reason.into() }
-}
-
-fn not_filled(error: FillError) -> Error {
-    match error {
-        FillError::Stopped(stopped) => stopped.into(),
-        FillError::Memory { needed, allowed } => Error::Memory { needed, allowed, voxel_that_fits: None },
+impl From<FillError> for FieldError {
+    fn from(error: FillError) -> Self {
+        match error {
+            FillError::Stopped(stopped) => Self::Stopped(stopped),
+            FillError::Memory { needed, allowed } => {
+                LimitError::Memory { needed, allowed, voxel_that_fits: None }.into()
+            }
+        }
     }
 }
 
-fn no_level(error: LevelError) -> Error {
-    match error {
-        LevelError::Fill(error) => not_filled(error),
-        LevelError::Stopped(stopped) => stopped.into(),
+impl From<LevelError> for FieldError {
+    fn from(error: LevelError) -> Self {
+        match error {
+            LevelError::Fill(error) => error.into(),
+            LevelError::Stopped(stopped) => Self::Stopped(stopped),
+        }
     }
 }
 
-impl From<FilterError> for Error {
-    fn from(error: FilterError) -> Self {
-        Self::Filter(error)
+impl From<BooleanError> for FieldError {
+    fn from(error: BooleanError) -> Self {
+        match error {
+            BooleanError::Stopped(stopped) => Self::Stopped(stopped),
+            other => Self::Repair(other),
+        }
+    }
+}
+
+impl From<DistanceError> for FieldError {
+    fn from(error: DistanceError) -> Self {
+        match error {
+            DistanceError::Stopped(stopped) => Self::Stopped(stopped),
+            other => Self::Distance(other),
+        }
+    }
+}
+
+impl From<SolidError> for FieldError {
+    fn from(error: SolidError) -> Self {
+        match error {
+            SolidError::Stopped(stopped) => Self::Stopped(stopped),
+            SolidError::NotSolid(what) => Self::NotSolid(what),
+        }
     }
 }

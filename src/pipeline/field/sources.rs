@@ -1,6 +1,6 @@
 //! The meshes that a field is made of, as one soup.
 
-use crate::field::Facet;
+use crate::field::SourceTriangle;
 use crate::mesh::TriMesh;
 use crate::pipeline::TriangleSource;
 
@@ -25,8 +25,8 @@ impl Sources {
     }
 
     /// The number of a triangle among all.
-    pub fn number(&self, facet: Facet) -> Option<u32> {
-        self.starts.get(facet.source as usize).map(|start| start + facet.triangle)
+    pub fn number(&self, triangle: SourceTriangle) -> Option<u32> {
+        self.starts.get(triangle.source as usize).map(|start| start + triangle.triangle)
     }
 
     /// What a triangle of the result comes from that lies on this one of all.

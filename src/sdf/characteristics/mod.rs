@@ -14,7 +14,7 @@ mod scan;
 
 use rayon::current_num_threads;
 
-use crate::lattice::{BRICK, Grid, Lattice};
+use crate::lattice::{BRICK, DistanceField, Lattice};
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
 use crate::sdf::exact::{self, Band, Cost, ExactError, ExactOptions, Features, Sign};
@@ -28,7 +28,7 @@ const SECONDS_PER_SLICE: f64 = 0.4e-6;
 /// So many h of band add one polyhedron to those that a voxel is in.
 const OVERLAP: f64 = 50.0;
 
-/// The signed distance to `mesh`, in h and negative inside, at the voxels of `lattice`.
+/// The signed distance to `mesh` at the voxels of `lattice`, counted in voxels.
 ///
 /// `mesh` is closed and oriented, without self-intersections. The result means the same as that of
 /// [`exact()`](crate::sdf::exact::exact) with [`Sign::Pseudonormal`]: voxels within the band are as far from it as `f32` tells,
@@ -43,7 +43,7 @@ pub fn characteristics(
     lattice: &Lattice,
     options: &ExactOptions,
     progress: &Progress,
-) -> Result<Grid<f32>, ExactError> {
+) -> Result<DistanceField, ExactError> {
     let needed = cost(mesh, lattice, options.band).memory;
     exact::whole(mesh, lattice, Sign::Pseudonormal, options, needed, progress, |scope| {
         let features = Features::of(mesh, lattice, scope.band);

@@ -7,7 +7,7 @@
 
 use glam::{DVec3, IVec3};
 
-use crate::sdf::exact::{Edge, Face, MARGIN, Measured, Region, Vertex};
+use crate::sdf::exact::{EdgeFeature, FaceFeature, MARGIN, Measured, Region, VertexFeature};
 
 /// A side this steep, or less, along an axis does not bound it.
 const LEVEL: f64 = 1e-100;
@@ -29,7 +29,7 @@ pub(super) trait Solid: Region {
     fn distance(&self, p: DVec3) -> Option<Measured>;
 }
 
-impl Solid for Face {
+impl Solid for FaceFeature {
     fn place(&self) -> DVec3 {
         self.corners[0]
     }
@@ -48,7 +48,7 @@ impl Solid for Face {
     }
 }
 
-impl Solid for Edge {
+impl Solid for EdgeFeature {
     fn place(&self) -> DVec3 {
         self.start
     }
@@ -66,7 +66,7 @@ impl Solid for Edge {
     }
 }
 
-impl Solid for Vertex {
+impl Solid for VertexFeature {
     fn place(&self) -> DVec3 {
         self.at
     }

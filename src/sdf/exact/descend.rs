@@ -4,7 +4,7 @@
 use glam::{DVec3, IVec3, Vec3, Vec4};
 
 use super::feature::Features;
-use super::quads::{Eight, Local, LocalEdge, LocalFace, LocalVertex, Sides};
+use super::quads::{Eight, Local, LocalEdge, LocalFace, LocalVertex, NearestSides};
 use crate::lattice::{BRICK, BRICK_VOXELS, index_in_brick};
 
 /// Voxels along one side of a tile.
@@ -61,7 +61,7 @@ struct Ids {
 
 /// The lists of one block, and room to find those of its children.
 #[derive(Default)]
-struct Level {
+struct BlockLists {
     faces: Ids,
     edges: Ids,
     vertices: Ids,
@@ -70,7 +70,7 @@ struct Level {
     shared: [Vec<(u32, u32)>; 3],
 }
 
-impl Level {
+impl BlockLists {
     fn len(&self) -> usize {
         self.faces.count + self.edges.count + self.vertices.count
     }
@@ -105,14 +105,14 @@ impl Ids {
 /// Works through tiles, one after another; keeps its memory between them.
 #[derive(Default)]
 pub(super) struct Worker {
-    levels: [Level; LEVELS],
+    levels: [BlockLists; LEVELS],
     faces: Vec<LocalFace>,
     edges: Vec<LocalEdge>,
     vertices: Vec<LocalVertex>,
 }
 
 /// What all blocks of a tile share.
-struct Tile<'a> {
+struct TileFeatures<'a> {
     faces: &'a [LocalFace],
     edges: &'a [LocalEdge],
     vertices: &'a [LocalVertex],
@@ -166,7 +166,7 @@ impl Worker {
         refill(&mut self.edges, &lists.edges, |id| LocalEdge::new(&features.edges[id], centre));
         refill(&mut self.vertices, &lists.vertices, |id| LocalVertex::new(&features.vertices[id], centre));
         let Self { faces, edges, vertices, .. } = self;
-        let tile = Tile { faces, edges, vertices, features, ids: lists, band, base, end };
+        let tile = TileFeatures { faces, edges, vertices, features, ids: lists, band, base, end };
         let top = &mut self.levels[0];
         top.faces.all(lists.faces.len());
         top.edges.all(lists.edges.len());
@@ -180,9 +180,9 @@ fn refill<T>(list: &mut Vec<T>, ids: &[u32], make: impl Fn(usize) -> T) {
     list.extend(ids.iter().map(|&id| make(id as usize)));
 }
 
-impl Tile<'_> {
+impl TileFeatures<'_> {
     /// Goes down to the bricks of `block`, whose lists are in the first of `levels`.
-    fn bricks(&self, levels: &mut [Level], block: Block, out: &mut Vec<Filled>) {
+    fn bricks(&self, levels: &mut [BlockLists], block: Block, out: &mut Vec<Filled>) {
         if block.size == BRICK {
             let mut voxels = Voxels { values: Box::new([f32::INFINITY; BRICK_VOXELS]), any: false };
             self.voxels(levels, block, &mut voxels);
@@ -199,7 +199,7 @@ impl Tile<'_> {
     }
 
     /// Fills the voxels of `block`, which lies within one brick.
-    fn voxels(&self, levels: &mut [Level], block: Block, voxels: &mut Voxels) {
+    fn voxels(&self, levels: &mut [BlockLists], block: Block, voxels: &mut Voxels) {
         let few = match block.size {
             2 => usize::MAX,
             4 => FEW_IN_BLOCK,
@@ -213,13 +213,18 @@ impl Tile<'_> {
     }
 
     /// Calls `visit` for each child of `block` that comes near the band, with its lists.
-    fn children(&self, levels: &mut [Level], block: Block, mut visit: impl FnMut(&Self, &mut [Level], Block)) {
+    fn children(
+        &self,
+        levels: &mut [BlockLists],
+        block: Block,
+        mut visit: impl FnMut(&Self, &mut [BlockLists], Block),
+    ) {
         let Some((this, below)) = levels.split_first_mut() else { return };
         let size = block.size / 2;
         let (step, half) = (0.5 * size as f32, 0.5 * (size - 1) as f32);
         let eight = Eight::new(block.centre(), step);
         let mut nearest = [Vec4::INFINITY; 2];
-        let Level { faces, edges, vertices, seen, shared } = this;
+        let BlockLists { faces, edges, vertices, seen, shared } = this;
         look(self.faces, faces.list(), &eight, half, &mut seen[0], &mut nearest);
         look(self.edges, edges.list(), &eight, half, &mut seen[1], &mut nearest);
         look(self.vertices, vertices.list(), &eight, half, &mut seen[2], &mut nearest);
@@ -240,12 +245,12 @@ impl Tile<'_> {
     }
 
     /// Measures all features of the lists at all voxels of `block`.
-    fn measure_all(&self, lists: &Level, block: Block, voxels: &mut Voxels) {
+    fn measure_all(&self, lists: &BlockLists, block: Block, voxels: &mut Voxels) {
         let pairs = block.size / 2;
         for n in 0..pairs * pairs * pairs {
             let base = block.base + 2 * IVec3::new(n % pairs, n / pairs % pairs, n / (pairs * pairs));
             let eight = Eight::new(Block { base, size: 2 }.centre(), 0.5);
-            let mut best = Sides::NONE;
+            let mut best = NearestSides::NONE;
             lists.faces.list().iter().for_each(|&id| self.faces[id as usize].measure(&eight, DOUBT, &mut best));
             lists.edges.list().iter().for_each(|&id| self.edges[id as usize].measure(&eight, DOUBT, &mut best));
             lists.vertices.list().iter().for_each(|&id| self.vertices[id as usize].measure(&eight, DOUBT, &mut best));
@@ -259,7 +264,7 @@ impl Tile<'_> {
     }
 
     /// Measures a voxel again in double precision, which tells its side.
-    fn decide(&self, lists: &Level, voxel: IVec3, voxels: &mut Voxels) {
+    fn decide(&self, lists: &BlockLists, voxel: IVec3, voxels: &mut Voxels) {
         let p = (self.base + voxel).as_dvec3();
         let faces = lists.faces.list().iter().map(|&id| self.ids.faces[id as usize]);
         let edges = lists.edges.list().iter().map(|&id| self.ids.edges[id as usize]);
@@ -274,7 +279,7 @@ impl Voxels {
     /// Takes the eight voxels from `base`, counted from the brick's first, on. Returns those, bit by bit, whose side
     /// single precision cannot tell.
     #[inline]
-    fn store(&mut self, base: IVec3, best: &Sides, band: f32) -> u32 {
+    fn store(&mut self, base: IVec3, best: &NearestSides, band: f32) -> u32 {
         let mut doubtful = 0;
         for half in 0..2 {
             let (outer, inner) = (best.outer[half], best.inner[half]);

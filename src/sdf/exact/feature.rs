@@ -19,7 +19,7 @@ const NARROWEST: f64 = 1e-10;
 
 /// The open side of a triangle. Lattice coordinates, as everything here.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::sdf) struct Face {
+pub(in crate::sdf) struct FaceFeature {
     pub corners: [DVec3; 3],
     /// Unit normal.
     pub normal: DVec3,
@@ -29,7 +29,7 @@ pub(in crate::sdf) struct Face {
 
 /// An edge between two vertices.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::sdf) struct Edge {
+pub(in crate::sdf) struct EdgeFeature {
     pub start: DVec3,
     /// Unit vector to the other end.
     pub along: DVec3,
@@ -42,7 +42,7 @@ pub(in crate::sdf) struct Edge {
 
 /// A vertex.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::sdf) struct Vertex {
+pub(in crate::sdf) struct VertexFeature {
     pub at: DVec3,
     /// Unit pseudonormal, or zero.
     pub normal: DVec3,
@@ -56,7 +56,7 @@ const ROUNDING: f64 = 1e-9;
 /// The square of a distance in h, and on which side of the surface the point is: negative inside.
 pub(in crate::sdf) type Measured = (f64, f64);
 
-impl Face {
+impl FaceFeature {
     /// `None` where the foot of the perpendicular from `p` is not on the face.
     pub(in crate::sdf) fn measure(&self, p: DVec3) -> Option<Measured> {
         let over = (0..3).all(|k| self.inner[k].dot(p - self.corners[k]) >= -ROUNDING);
@@ -65,7 +65,7 @@ impl Face {
     }
 }
 
-impl Edge {
+impl EdgeFeature {
     pub(in crate::sdf) fn measure(&self, p: DVec3) -> Option<Measured> {
         let from = p - self.start;
         let along = self.along.dot(from);
@@ -74,7 +74,7 @@ impl Edge {
     }
 }
 
-impl Vertex {
+impl VertexFeature {
     pub(in crate::sdf) fn measure(&self, p: DVec3) -> Option<Measured> {
         let from = p - self.at;
         Some((from.length_squared(), self.normal.dot(from)))
@@ -84,9 +84,9 @@ impl Vertex {
 /// All that can be nearest to a point within the band.
 #[derive(Debug, Default)]
 pub(in crate::sdf) struct Features {
-    pub faces: Vec<Face>,
-    pub edges: Vec<Edge>,
-    pub vertices: Vec<Vertex>,
+    pub faces: Vec<FaceFeature>,
+    pub edges: Vec<EdgeFeature>,
+    pub vertices: Vec<VertexFeature>,
 }
 
 impl Features {
@@ -96,10 +96,11 @@ impl Features {
         let all_edges = Edges::new(&triangles, mesh.positions.len());
         let normals = &Pseudonormals::over(mesh, &triangles, &all_edges);
         let positions: Vec<DVec3> = mesh.positions.par_iter().map(|&p| lattice.to_lattice(p)).collect();
-        let faces: Vec<Option<Face>> = triangles.par_iter().map(|t| face(t.map(|v| positions[v as usize]))).collect();
+        let faces: Vec<Option<FaceFeature>> =
+            triangles.par_iter().map(|t| face(t.map(|v| positions[v as usize]))).collect();
         let mut raw = Vec::with_capacity(3 * triangles.len() / 2);
         all_edges.each(|edge| raw.push(RawEdge::new(&edge, &faces)));
-        let (edges, ends): (Vec<Option<Edge>>, Vec<Option<End>>) =
+        let (edges, ends): (Vec<Option<EdgeFeature>>, Vec<Option<End>>) =
             raw.par_iter().map(|raw| raw.edge(&positions, &faces, normals, reach)).unzip();
         let edges = edges.into_iter().flatten().collect();
         let ends: Vec<End> = ends.into_iter().flatten().collect();
@@ -123,7 +124,7 @@ impl Features {
     }
 }
 
-fn face(corners: [DVec3; 3]) -> Option<Face> {
+fn face(corners: [DVec3; 3]) -> Option<FaceFeature> {
     let [a, b, c] = corners;
     let sides = [b - a, c - b, a - c];
     let longest = sides.iter().map(|side| side.length()).fold(0.0, f64::max);
@@ -133,7 +134,7 @@ fn face(corners: [DVec3; 3]) -> Option<Face> {
     for (inner, side) in inner.iter_mut().zip(sides) {
         *inner = normal.cross(side).try_normalize()?;
     }
-    Some(Face { corners, normal, inner })
+    Some(FaceFeature { corners, normal, inner })
 }
 
 /// An edge by numbers.
@@ -149,7 +150,7 @@ struct RawEdge {
 type End = ([u32; 2], DVec3, bool);
 
 impl RawEdge {
-    fn new(edge: &mesh::Edge<'_>, faces: &[Option<Face>]) -> Self {
+    fn new(edge: &mesh::Edge<'_>, faces: &[Option<FaceFeature>]) -> Self {
         let mut sides = edge.halves().filter(|&half| faces[half as usize / 3].is_some());
         let sides = [sides.next(), sides.next()];
         Self { ends: edge.ends, half: edge.halves().next().unwrap_or_default(), sides, count: edge.count() }
@@ -159,10 +160,10 @@ impl RawEdge {
     fn edge(
         &self,
         positions: &[DVec3],
-        faces: &[Option<Face>],
+        faces: &[Option<FaceFeature>],
         normals: &Pseudonormals,
         reach: f64,
-    ) -> (Option<Edge>, Option<End>) {
+    ) -> (Option<EdgeFeature>, Option<End>) {
         let [start, end] = self.ends.map(|v| positions[v as usize]);
         let length = start.distance(end);
         if length == 0.0 {
@@ -173,12 +174,12 @@ impl RawEdge {
         let flat = self.count == 2 && sides[0] != DVec3::ZERO && (sides[0] + sides[1]).length() * reach < NARROWEST;
         let along = (end - start) / length;
         let normal = normals.of_edge(self.half as usize / 3, self.half as usize % 3).normalize_or_zero();
-        let edge = (!flat).then_some(Edge { start, along, length, normal, sides });
+        let edge = (!flat).then_some(EdgeFeature { start, along, length, normal, sides });
         (edge, Some((self.ends, along, flat)))
     }
 }
 
-fn vertices(triangles: &[[u32; 3]], positions: &[DVec3], normals: &Pseudonormals, ends: &[End]) -> Vec<Vertex> {
+fn vertices(triangles: &[[u32; 3]], positions: &[DVec3], normals: &Pseudonormals, ends: &[End]) -> Vec<VertexFeature> {
     let count = positions.len();
     let mut corner_of = vec![u32::MAX; count];
     for (corner, &v) in triangles.iter().flatten().enumerate() {
@@ -208,7 +209,7 @@ fn vertices(triangles: &[[u32; 3]], positions: &[DVec3], normals: &Pseudonormals
         };
         let corner = corner_of[v] as usize;
         let normal = normals.of_corner(corner / 3, corner % 3).normalize_or_zero();
-        Some(Vertex { at: positions[v], normal, sides: spread(edges.iter().map(direction)) })
+        Some(VertexFeature { at: positions[v], normal, sides: spread(edges.iter().map(direction)) })
     };
     (0..count).into_par_iter().filter_map(vertex).collect()
 }

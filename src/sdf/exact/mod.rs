@@ -24,14 +24,14 @@ pub use cost::{Cost, cost};
 pub use point::{ExactDistance, Nearest, PointSign};
 pub use slabs::{Slab, Slabs};
 
-use crate::lattice::{BRICK, Bricks, Grid, Lattice, brick_of};
+use crate::lattice::{BRICK, Bricks, DistanceField, Grid, Lattice, brick_of};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh};
 use crate::progress::{Progress, Stopped};
 use crate::sdf::Levels;
 use crate::vote::{Votes, Winding};
 pub(in crate::sdf) use descend::Filled;
-pub(in crate::sdf) use feature::{Edge, Face, Features, Measured, Vertex};
+pub(in crate::sdf) use feature::{EdgeFeature, FaceFeature, Features, Measured, VertexFeature};
 pub(in crate::sdf) use tiles::{MARGIN, Region, Scope};
 
 /// Voxels along an axis, at most.
@@ -42,7 +42,7 @@ const MOST_VOXELS: i32 = 1 << 15;
 pub enum Band {
     /// All voxels within this distance, in h; less than 1 counts as 1.
     Within(f64),
-    /// The whole lattice.
+    /// The whole lattice is filled.
     Full,
 }
 
@@ -99,7 +99,7 @@ pub enum ExactError {
     },
 }
 
-/// The signed distance to `mesh`, in h and negative inside, at the voxels of `lattice`.
+/// The signed distance to `mesh` at the voxels of `lattice`, counted in voxels.
 ///
 /// Every voxel within the band is right to 1e-4 h (and to 3e-7 of its distance). Bricks without such a voxel are
 /// inactive and have their side; voxels beyond the band in active bricks have ± the band's width. With
@@ -116,7 +116,7 @@ pub fn exact(
     sign: Sign<'_>,
     options: &ExactOptions,
     progress: &Progress,
-) -> Result<Grid<f32>, ExactError> {
+) -> Result<DistanceField, ExactError> {
     let needed = cost(mesh, lattice, options.band).memory;
     whole(mesh, lattice, sign, options, needed, progress, |scope| {
         let features = Features::of(mesh, lattice, scope.band);
@@ -134,11 +134,11 @@ pub(in crate::sdf) fn whole(
     needed: u64,
     progress: &Progress,
     bricks: impl FnOnce(&Scope) -> Result<Vec<Filled>, Stopped>,
-) -> Result<Grid<f32>, ExactError> {
+) -> Result<DistanceField, ExactError> {
     let scope = checked_scope(mesh, lattice, options, needed)?;
     let mut raw = assemble(bricks(&scope)?, &scope);
     sides::settle(&mut raw, mesh, lattice, sign, progress)?;
-    Ok(raw.grid)
+    Ok(DistanceField::in_voxels(*lattice, raw.grid))
 }
 
 /// What is to be filled, which takes `needed` bytes, or why it cannot be.

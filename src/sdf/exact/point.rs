@@ -41,7 +41,7 @@ pub struct ExactDistance {
 /// What [`ExactDistance`] says of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
-    /// Distance, model units, negative inside.
+    /// The signed distance of the point, model units, negative inside.
     pub signed: f64,
     /// The nearest point of the surface, model units.
     pub point: DVec3,
@@ -55,7 +55,7 @@ pub struct Nearest {
 }
 
 impl ExactDistance {
-    /// Ready to be asked about `mesh`, whose coordinates are finite.
+    /// Prepares `mesh`, whose coordinates are finite, for being asked.
     pub fn of(mesh: &TriMesh, sign: PointSign) -> Self {
         let (tree, normals) = rayon::join(|| ClosestTree::of_mesh(mesh), || Pseudonormals::of(mesh));
         Self { tree, normals, sign }
@@ -66,7 +66,7 @@ impl ExactDistance {
         self.within(p, f64::INFINITY)
     }
 
-    /// The same if the surface is not farther from `p` than `limit`; both in model units.
+    /// What [`Self::at`] says, if the surface is not farther from `p` than `limit`; both in model units.
     pub fn within(&self, p: DVec3, limit: f64) -> Option<Nearest> {
         self.tree.nearest_within(p, limit).map(|closest| self.nearest(p, &closest))
     }

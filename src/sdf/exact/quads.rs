@@ -3,7 +3,7 @@
 
 use glam::{BVec4A, DVec3, Vec3, Vec4};
 
-use super::feature::{Edge, Face, MOST_SIDES, Vertex};
+use super::feature::{EdgeFeature, FaceFeature, MOST_SIDES, VertexFeature};
 
 /// Regions are larger by this, in h: more than rounding moves a point of a tile, and less than distances may err.
 pub(super) const MARGIN: f32 = 2e-5;
@@ -33,7 +33,7 @@ pub(super) struct Look {
 
 /// The nearest surface whose outer side is seen, and the nearest whose inner side is, as squares.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sides {
+pub(super) struct NearestSides {
     pub outer: Values,
     pub inner: Values,
 }
@@ -69,7 +69,7 @@ impl Eight {
     }
 }
 
-impl Sides {
+impl NearestSides {
     pub(super) const NONE: Self = Self { outer: [INFINITY; 2], inner: [INFINITY; 2] };
 
     /// Takes a distance where `counts`; where `side` is within `doubt` of 0 it counts for both sides.
@@ -97,10 +97,10 @@ pub(super) trait Local: Copy + Sync {
     /// What it is to the boxes of half-width `half` around eight points.
     fn look(&self, eight: &Eight, half: f32) -> Look;
     /// Offers its distances at eight points.
-    fn measure(&self, eight: &Eight, doubt: f32, best: &mut Sides);
+    fn measure(&self, eight: &Eight, doubt: f32, best: &mut NearestSides);
 }
 
-/// See [`Face`].
+/// See [`FaceFeature`].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LocalFace {
     level: Vec4,
@@ -109,7 +109,7 @@ pub(super) struct LocalFace {
 }
 
 impl LocalFace {
-    pub(super) fn new(face: &Face, centre: DVec3) -> Self {
+    pub(super) fn new(face: &FaceFeature, centre: DVec3) -> Self {
         let inner = [0, 1, 2].map(|k| plane(face.inner[k], face.corners[k], centre));
         Self { level: plane(face.normal, face.corners[0], centre), inner, growth: inner.map(growth) }
     }
@@ -135,7 +135,7 @@ impl Local for LocalFace {
     }
 
     #[inline(always)]
-    fn measure(&self, eight: &Eight, doubt: f32, best: &mut Sides) {
+    fn measure(&self, eight: &Eight, doubt: f32, best: &mut NearestSides) {
         let level = eight.linear(self.level);
         let inner = eight.linear_3(&self.inner);
         for half in 0..2 {
@@ -146,7 +146,7 @@ impl Local for LocalFace {
     }
 }
 
-/// See [`Edge`].
+/// See [`EdgeFeature`].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LocalEdge {
     /// Square to the edge, the first along the pseudonormal.
@@ -161,7 +161,7 @@ pub(super) struct LocalEdge {
 }
 
 impl LocalEdge {
-    pub(super) fn new(edge: &Edge, centre: DVec3) -> Self {
+    pub(super) fn new(edge: &EdgeFeature, centre: DVec3) -> Self {
         let blind = edge.normal == DVec3::ZERO;
         let first = if blind { edge.along.any_orthonormal_vector() } else { edge.normal };
         // The pseudonormal is square to the edge but for rounding.
@@ -203,7 +203,7 @@ impl Local for LocalEdge {
     }
 
     #[inline(always)]
-    fn measure(&self, eight: &Eight, doubt: f32, best: &mut Sides) {
+    fn measure(&self, eight: &Eight, doubt: f32, best: &mut NearestSides) {
         let across = eight.linear_2(&self.across);
         let along = eight.linear(self.along);
         for half in 0..2 {
@@ -215,7 +215,7 @@ impl Local for LocalEdge {
     }
 }
 
-/// See [`Vertex`].
+/// See [`VertexFeature`].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LocalVertex {
     at: Vec3,
@@ -228,7 +228,7 @@ pub(super) struct LocalVertex {
 }
 
 impl LocalVertex {
-    pub(super) fn new(vertex: &Vertex, centre: DVec3) -> Self {
+    pub(super) fn new(vertex: &VertexFeature, centre: DVec3) -> Self {
         let sides = vertex.sides.map(|side| plane(-side, vertex.at, centre));
         Self {
             at: (vertex.at - centre).as_vec3(),
@@ -264,7 +264,7 @@ impl Local for LocalVertex {
     }
 
     #[inline(always)]
-    fn measure(&self, eight: &Eight, doubt: f32, best: &mut Sides) {
+    fn measure(&self, eight: &Eight, doubt: f32, best: &mut NearestSides) {
         let square = self.squares(eight);
         let side = eight.linear(self.normal);
         for half in 0..2 {

@@ -26,7 +26,7 @@ pub(super) fn settle(
     match sign {
         Sign::Pseudonormal => {
             let bounds = mesh.bounds().ok_or(ExactError::Empty)?;
-            let sides = Sides { mesh, bounds, lattice, point: std::cell::OnceCell::new() };
+            let sides = PointQuery { mesh, bounds, lattice, point: std::cell::OnceCell::new() };
             let band = raw.band;
             raw.grid.values.par_iter_mut().for_each(|values| spread(values, band));
             sides.classes(raw);
@@ -78,14 +78,14 @@ pub(super) fn settle(
 }
 
 /// The point query, made when it is first needed.
-struct Sides<'a> {
+struct PointQuery<'a> {
     mesh: &'a TriMesh,
     bounds: Bounds,
     lattice: &'a Lattice,
     point: std::cell::OnceCell<ExactDistance>,
 }
 
-impl Sides<'_> {
+impl PointQuery<'_> {
     fn point(&self) -> &ExactDistance {
         self.point.get_or_init(|| ExactDistance::of(self.mesh, PointSign::Pseudonormal))
     }

@@ -4,11 +4,11 @@ use glam::IVec3;
 
 use super::descend::Filled;
 use super::{ExactError, ExactOptions, Sign, assemble, checked_scope, cost, sides, tiles};
-use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice};
+use crate::lattice::{BRICK, BRICK_VOXELS, DistanceField, Lattice};
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
 
-/// Eight slices of a lattice: signed distances in h, infinite where there are none.
+/// Eight slices of a lattice: signed distances counted in voxels, infinite where none is known.
 pub struct Slab {
     end: IVec3,
     low: i32,
@@ -16,25 +16,25 @@ pub struct Slab {
 }
 
 impl Slab {
-    /// Slices `low` to `low` + 7 of a lattice of `end` voxels.
+    /// An empty slab for slices `low` to `low` + 7 of a lattice of `end` voxels.
     pub fn new(end: IVec3, low: i32) -> Self {
         Self { end, low, values: vec![f32::INFINITY; (end.x * end.y * BRICK) as usize] }
     }
 
-    /// Its slices, each row by row.
+    /// The slices of the slab, each row by row.
     pub fn planes(&mut self) -> std::slice::ChunksMut<'_, f32> {
         self.values.chunks_mut((self.end.x * self.end.y) as usize)
     }
 }
 
-/// The slabs so far.
+/// A field in the making: the bricks of the slabs that were added.
 pub struct Slabs {
     scope: tiles::Scope,
     filled: Vec<Filled>,
 }
 
 impl Slabs {
-    /// None yet, for the distance to `mesh`.
+    /// A field without any slab yet, for the distance to `mesh`.
     ///
     /// # Errors
     /// See [`ExactError`].
@@ -50,7 +50,7 @@ impl Slabs {
         self.scope.band
     }
 
-    /// Voxels along x, y and z, multiples of eight.
+    /// The number of voxels along x, y and z, a multiple of eight each.
     pub fn end(&self) -> IVec3 {
         self.scope.end
     }
@@ -73,13 +73,13 @@ impl Slabs {
         }
     }
 
-    /// The whole field; voxels beyond the band have their side.
+    /// The whole field, in which voxels beyond the band are told inside from outside, too.
     ///
     /// # Errors
     /// See [`ExactError`].
-    pub fn finish(self, mesh: &TriMesh, lattice: &Lattice, progress: &Progress) -> Result<Grid<f32>, ExactError> {
+    pub fn finish(self, mesh: &TriMesh, lattice: &Lattice, progress: &Progress) -> Result<DistanceField, ExactError> {
         let mut raw = assemble(self.filled, &self.scope);
         sides::settle(&mut raw, mesh, lattice, Sign::Pseudonormal, progress)?;
-        Ok(raw.grid)
+        Ok(DistanceField::in_voxels(*lattice, raw.grid))
     }
 }

@@ -4,7 +4,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::descend::{Filled, Lists, TILE, Worker};
-use super::feature::{Edge, Face, Features, Vertex};
+use super::feature::{EdgeFeature, FaceFeature, Features, VertexFeature};
 use crate::progress::{Progress, Stopped};
 
 /// Regions are larger by this, in h.
@@ -68,7 +68,7 @@ fn reaches(inner: DVec3, from: DVec3, half: f64) -> bool {
     inner.dot(from) >= -MARGIN - half * inner.abs().element_sum()
 }
 
-impl Region for Face {
+impl Region for FaceFeature {
     fn seen(&self, centre: DVec3, half: f64) -> Option<Seen> {
         let from = self.corners.map(|corner| centre - corner);
         if !(0..3).all(|k| reaches(self.inner[k], from[k], half)) {
@@ -86,7 +86,7 @@ impl Region for Face {
     }
 }
 
-impl Region for Edge {
+impl Region for EdgeFeature {
     fn seen(&self, centre: DVec3, half: f64) -> Option<Seen> {
         let from = centre - self.start;
         let along = self.along.dot(from);
@@ -118,7 +118,7 @@ impl Region for Edge {
     }
 }
 
-impl Region for Vertex {
+impl Region for VertexFeature {
     fn seen(&self, centre: DVec3, half: f64) -> Option<Seen> {
         let from = centre - self.at;
         let distance = self.sides.iter().all(|&side| reaches(-side, from, half)).then(|| from.length())?;

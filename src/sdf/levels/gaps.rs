@@ -1,4 +1,4 @@
-//! Which end of an outline belongs to which beginning.
+//! Which end of a slice contour belongs to which beginning.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;

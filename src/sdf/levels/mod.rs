@@ -1,10 +1,10 @@
 //! Inside and outside level by level (Payne & Toga 1992, "Optimizations", point 1).
 //!
-//! Each plane of voxels cuts the oriented surface in outlines: one segment for each triangle, with the inside on its left, from one cut
+//! Each plane of voxels cuts the oriented surface in slice contours: one segment for each triangle, with the inside on its left, from one cut
 //! edge of the mesh to another. At an edge with as many triangles one way as the other, as many segments come as go, so
-//! on a closed surface the outlines are closed, whatever their coordinates. Elsewhere, at the rim of a hole or at a
+//! on a closed surface the contours are closed, whatever their coordinates. Elsewhere, at the rim of a hole or at a
 //! crack, they end; each end is joined by a straight segment with a beginning, the nearest pairs of a plane first. A voxel is inside
-//! where the closed outlines wind around it at least once.
+//! where the closed contours wind around it at least once.
 //!
 //! A vertex on a plane counts as above it, and likewise for rows and voxels, as if the lattice were moved by
 //! (−ε³, −ε², −ε): nothing ever lies on a plane.
@@ -68,14 +68,14 @@ fn counts(lattice: &Lattice) -> IVec3 {
 }
 
 impl Levels {
-    /// Of the oriented surface `mesh`, for the voxels of `lattice` and of the bricks at its end. Vertices of equal
-    /// coordinates are one.
+    /// Finds the inside of the oriented surface `mesh`, for the voxels of `lattice` and of the bricks at its end. Vertices of
+    /// equal coordinates are one.
     ///
     /// # Errors
     /// See [`LevelsError`].
     pub fn of(mesh: &TriMesh, lattice: &Lattice, progress: &Progress) -> Result<Self, LevelsError> {
         let counts = counts(lattice);
-        let surface = Surface::of(mesh, lattice);
+        let surface = CutSurface::of(mesh, lattice);
         progress.check()?;
         let [width, height, depth] = [counts.x, BRICK * counts.y, BRICK * counts.z].map(|count| count as usize);
         let mut eights = Vec::new();
@@ -111,7 +111,7 @@ impl Levels {
 }
 
 /// A surface to be cut; lattice coordinates.
-struct Surface {
+struct CutSurface {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     rim: Vec<RimEdge>,
@@ -135,7 +135,7 @@ struct Cut {
 /// A directed piece of an outline within its plane.
 type Segment = [DVec2; 2];
 
-impl Surface {
+impl CutSurface {
     fn of(mesh: &TriMesh, lattice: &Lattice) -> Self {
         let first = first_of_equal(&mesh.positions);
         let welded = mesh.triangles.iter().map(|t| t.map(|v| first[v as usize]));

@@ -1,9 +1,9 @@
-//! Scan conversion of the outlines of one plane.
+//! Scan conversion of the slice contours of one plane.
 
 use super::Segment;
 
-/// Where an outline crosses a row.
-struct Crossing {
+/// Where a slice contour crosses a row.
+struct RowCrossing {
     row: u32,
     x: f64,
     /// +1 where the way along x goes in.
@@ -29,7 +29,7 @@ pub(super) fn fill(plane: &mut [u8], width: usize, outlines: Vec<Segment>) {
 }
 
 /// Adds the crossings of a segment with the rows of its plane.
-fn cross([from, to]: Segment, rows: usize, crossings: &mut Vec<Crossing>) {
+fn cross([from, to]: Segment, rows: usize, crossings: &mut Vec<RowCrossing>) {
     let (low, high) = if from.y < to.y { (from, to) } else { (to, from) };
     let turn = if from.y < to.y { -1 } else { 1 };
     let number = |y: f64| (y.floor() + 1.0).clamp(0.0, rows as f64) as u32;
@@ -37,7 +37,7 @@ fn cross([from, to]: Segment, rows: usize, crossings: &mut Vec<Crossing>) {
     let (left, right) = (low.x.min(high.x), low.x.max(high.x));
     crossings.extend((number(low.y)..number(high.y)).map(|row| {
         let x = low.x + (f64::from(row) - low.y) * slope;
-        Crossing { row, x: x.clamp(left, right), turn }
+        RowCrossing { row, x: x.clamp(left, right), turn }
     }));
 }
 

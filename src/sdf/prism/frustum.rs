@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::surface::Surface;
+use super::surface::PrismSurface;
 
 /// Frusta are larger than they must be by this, h: more than hardware moves corners, and than slim cones at vertices are wide.
 const MARGIN: f64 = 0.05;
@@ -25,8 +25,8 @@ const LEAST_RISE: f64 = 0.05;
 /// A convex body with a hexagon at either end: the three sides of a triangle moved out, its corners cut off.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frustum {
-    /// Its triangle.
-    pub facet: u32,
+    /// The triangle that it belongs to, by its number in [`super::Prisms::frames`].
+    pub frame: u32,
     /// The corners, lattice coordinates: of the hexagon at the surface, then of that at the end of the band.
     pub corners: [DVec3; 12],
 }
@@ -72,17 +72,17 @@ struct Plan {
 }
 
 /// The frusta of triangle `t`: one on either side, or one around all of its band.
-pub(super) fn frusta(surface: &Surface, t: usize, facet: u32, band: f64) -> Vec<Frustum> {
+pub(super) fn frusta(surface: &PrismSurface, t: usize, frame: u32, band: f64) -> Vec<Frustum> {
     let Some(plan) = Plan::new(surface, t) else { return Vec::new() };
-    let half = |sign: f64| plan.leans(surface, t, sign).map(|leans| plan.frustum(facet, leans, sign, band));
+    let half = |sign: f64| plan.leans(surface, t, sign).map(|leans| plan.frustum(frame, leans, sign, band));
     match [half(1.0), half(-1.0)] {
         [Some(above), Some(below)] => vec![above, below],
-        _ => vec![plan.around(facet, band)],
+        _ => vec![plan.around(frame, band)],
     }
 }
 
 impl Plan {
-    fn new(surface: &Surface, t: usize) -> Option<Self> {
+    fn new(surface: &PrismSurface, t: usize) -> Option<Self> {
         let up = surface.normals[t]?;
         let corners = surface.corners(t);
         let along = [0, 1, 2].map(|k| (corners[(k + 1) % 3] - corners[k]).normalize_or_zero());
@@ -97,7 +97,7 @@ impl Plan {
     }
 
     /// How far the frustum on the side of `sign` leans out; `None` where it cannot.
-    fn leans(&self, surface: &Surface, t: usize, sign: f64) -> Option<Leans> {
+    fn leans(&self, surface: &PrismSurface, t: usize, sign: f64) -> Option<Leans> {
         let up = self.up * sign;
         // The half-angle direction over each side where the surface is convex.
         let mut over = [None; 3];
@@ -114,14 +114,14 @@ impl Plan {
         })
     }
 
-    fn frustum(&self, facet: u32, leans: Leans, sign: f64, band: f64) -> Frustum {
+    fn frustum(&self, frame: u32, leans: Leans, sign: f64, band: f64) -> Frustum {
         let high = band + MARGIN;
         let slanted = |lean: f64| [MARGIN, lean * high + MARGIN];
         let cuts = leans.cuts.map(slanted);
         let made = |leans: [f64; 3]| {
             let sides = leans.map(|lean| if lean > MOST_LEAN { [high, high] } else { slanted(lean) });
             let ends = [0, 1].map(|n| self.hexagon(sides.map(|side| side[n]), cuts.map(|cut| cut[n])));
-            self.joined(facet, ends, [-MARGIN * sign, high * sign])
+            self.joined(frame, ends, [-MARGIN * sign, high * sign])
         };
         let frustum = made(leans.sides);
         // A side that leans out far may pass over one that does not, and turn the hexagon inside out.
@@ -140,15 +140,15 @@ impl Plan {
     }
 
     /// The box around all that is within the band.
-    fn around(&self, facet: u32, band: f64) -> Frustum {
+    fn around(&self, frame: u32, band: f64) -> Frustum {
         let wide = band + MARGIN;
         let hexagon = || self.hexagon([wide; 3], [wide; 3]);
-        self.joined(facet, [hexagon(), hexagon()], [-wide, wide])
+        self.joined(frame, [hexagon(), hexagon()], [-wide, wide])
     }
 
     /// The body between two hexagons at two heights. Where the sides meet before the cut at one end, nothing is cut off at
     /// either: the cut would lean in.
-    fn joined(&self, facet: u32, ends: [[Corner; 3]; 2], heights: [f64; 2]) -> Frustum {
+    fn joined(&self, frame: u32, ends: [[Corner; 3]; 2], heights: [f64; 2]) -> Frustum {
         let whole = [0, 1, 2].map(|k| ends.iter().any(|end| end[k].cut.is_none()));
         let corners = std::array::from_fn(|n| {
             let (end, k) = (n / 6, n % 6 / 2);
@@ -159,7 +159,7 @@ impl Plan {
             };
             self.corners[k] + off + self.up * heights[end]
         });
-        Frustum { facet, corners }
+        Frustum { frame, corners }
     }
 
     /// The triangle with its sides moved out and its corners cut off, both h, in its plane. Cuts lie outside of the feet of the

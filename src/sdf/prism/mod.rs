@@ -2,10 +2,10 @@
 //!
 //! Every triangle has a [`Frustum`] on either side that holds whatever is nearest to it, its sides and corners included. Slices
 //! along z cut these into convex polygons ([`Table`]); at each voxel of a polygon the exact distance to the triangle is
-//! computed in its own frame ([`Facet`]), and the smallest in absolute value stays. Here this is done on the processor, as the
+//! computed in its own frame ([`TriangleFrame`]), and the smallest in absolute value stays. Here this is done on the processor, as the
 //! twin of what the graphics processor draws where that is built in: same prisms, same polygons, same distances.
 
-mod facet;
+mod frame;
 mod frustum;
 mod surface;
 mod table;
@@ -13,41 +13,42 @@ mod table;
 use glam::{DVec2, IVec3};
 use rayon::prelude::*;
 
-pub use facet::Facet;
+pub use frame::TriangleFrame;
 pub use frustum::{EDGES, Frustum};
 pub use table::{MOST_CORNERS, Section, Table};
 
 use super::exact::{ExactError, ExactOptions, Slab, Slabs};
-use crate::lattice::{BRICK, Grid, Lattice};
+use crate::lattice::{BRICK, DistanceField, Lattice};
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
-use surface::Surface;
+use surface::PrismSurface;
 
 /// The prisms of a surface.
 #[derive(Debug, Default)]
 pub struct Prisms {
-    /// The triangles that have a plane, in their order.
-    pub facets: Vec<Facet>,
+    /// The triangles that have a plane, each in its own frame, in the order of the mesh.
+    pub frames: Vec<TriangleFrame>,
     /// What each can be nearest to.
     pub frusta: Vec<Frustum>,
 }
 
 impl Prisms {
-    /// Of `mesh`, a closed, oriented manifold, in the coordinates of `lattice`, as far as they matter within `band` (h).
+    /// The prisms of `mesh`, a closed, oriented manifold, in the coordinates of `lattice`, as far as they matter within `band`
+    /// (voxels).
     pub fn new(mesh: &TriMesh, lattice: &Lattice, band: f64) -> Self {
-        let surface = Surface::new(mesh, lattice);
+        let surface = PrismSurface::new(mesh, lattice);
         let whole: Vec<usize> = (0..surface.triangles.len()).filter(|&t| surface.normals[t].is_some()).collect();
-        let facet = |&t: &usize| {
-            surface.normals[t].map(|normal| Facet::new(t, surface.corners(t), normal, &surface.pseudonormals))
+        let frame = |&t: &usize| {
+            surface.normals[t].map(|normal| TriangleFrame::new(t, surface.corners(t), normal, &surface.pseudonormals))
         };
-        let facets = whole.par_iter().filter_map(facet).collect();
+        let frames = whole.par_iter().filter_map(frame).collect();
         let frusta = whole.par_iter().enumerate();
         let frusta = frusta.flat_map_iter(|(n, &t)| frustum::frusta(&surface, t, n as u32, band)).collect();
-        Self { facets, frusta }
+        Self { frames, frusta }
     }
 }
 
-/// The signed distance to `mesh`, a closed, oriented manifold, in h and negative inside, at the voxels of `lattice`: what
+/// The signed distance to `mesh`, a closed, oriented manifold, at the voxels of `lattice`, counted in voxels: what
 /// [`super::exact::exact`] gives with pseudonormals, to 1e-4 h, by scan conversion of prisms on the processor. Memory holds the
 /// prisms, one slab of eight slices, and the result.
 ///
@@ -58,7 +59,7 @@ pub fn prism(
     lattice: &Lattice,
     options: &ExactOptions,
     progress: &Progress,
-) -> Result<Grid<f32>, ExactError> {
+) -> Result<DistanceField, ExactError> {
     let mut slabs = Slabs::new(mesh, lattice, options)?;
     let prisms = Prisms::new(mesh, lattice, slabs.band());
     progress.check()?;
@@ -80,14 +81,14 @@ fn draw(prisms: &Prisms, table: &Table, active: &[u32], z: i32, end: IVec3, valu
     for &n in active {
         let section = &table.sections()[n as usize];
         let frustum = &prisms.frusta[section.frustum as usize];
-        let facet = &prisms.facets[frustum.facet as usize];
+        let frame = &prisms.frames[frustum.frame as usize];
         let corners = section.corners(frustum, z);
         let low = corners.iter().fold(f64::INFINITY, |low, p| low.min(p.y)).ceil().max(0.0) as i32;
         let high = corners.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p.y)).floor();
         for y in low..=(high as i32).min(end.y - 1) {
             let [from, to] = row(&corners, f64::from(y));
             for x in (from.ceil().max(0.0) as i32)..=(to.floor().min(f64::from(end.x - 1)) as i32) {
-                let signed = facet.signed(IVec3::new(x, y, z));
+                let signed = frame.signed(IVec3::new(x, y, z));
                 let best = &mut values[(y * end.x + x) as usize];
                 if signed.abs() < best.abs() {
                     *best = signed;

@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-9;
 const MOST_EDGES: usize = 64;
 
 /// The surface, lattice coordinates.
-pub(super) struct Surface {
+pub(super) struct PrismSurface {
     pub positions: Vec<DVec3>,
     /// The welded triangles.
     pub triangles: Vec<[u32; 3]>,
@@ -31,7 +31,7 @@ pub(super) struct Surface {
     axes: Vec<Option<(DVec3, f64)>>,
 }
 
-impl Surface {
+impl PrismSurface {
     pub(super) fn new(mesh: &TriMesh, lattice: &Lattice) -> Self {
         let triangles = welded_triangles(mesh);
         let positions: Vec<DVec3> = mesh.positions.par_iter().map(|&p| lattice.to_lattice(p)).collect();

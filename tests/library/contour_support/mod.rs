@@ -4,15 +4,17 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use glam::{DVec3, IVec3};
-use meshwright::contour::{Collapsed, Contour, ContourOptions, Crossing, Edge, Merge, collapse_same_voxel, contour};
-use meshwright::lattice::{Bricks, Grid, Lattice, brick_of, index_in_brick};
-use meshwright::mesh::{TriMesh, ValidateOptions, validate};
+use meshwright::contour::{
+    Collapsed, Contour, ContourOptions, Crossing, Edge, Ground, Merge, collapse_same_voxel, contour,
+};
+use meshwright::lattice::{Bricks, DistanceField, Grid, Lattice, brick_of, index_in_brick};
+use meshwright::mesh::{Plane, TriMesh, ValidateOptions, validate};
 use meshwright::progress::Progress;
 
 /// A set of inside voxels in an otherwise empty lattice.
 pub struct Case {
     pub lattice: Lattice,
-    pub distance: Grid<f32>,
+    pub distance: DistanceField,
     pub seed: u64,
     /// Share of the crossings that lie at the very ends of their edge; the next share has none.
     pub extreme: f64,
@@ -61,6 +63,7 @@ impl Case {
                 distance.values[n][index_in_brick(v)] = if inside(v) { -d } else { d };
             }
         }
+        let distance = DistanceField::in_voxels(lattice, distance);
         Self { lattice, distance, seed, extreme: 0.3, interpolated: 0.2 }
     }
 
@@ -69,23 +72,24 @@ impl Case {
         let [kind, t] = [0, 1].map(|k| noise(self.seed, edge.voxel, 8 * k + u32::from(edge.axis)));
         let triangle = (noise(self.seed, edge.voxel, 32 + u32::from(edge.axis)) * 1000.0) as u32;
         let t = if kind < self.extreme { t.round() } else { t };
-        (kind < 1.0 - self.interpolated).then_some(Crossing { t, triangle })
+        (kind < 1.0 - self.interpolated).then_some(Crossing { t, triangle: Some(triangle) })
     }
 
     pub fn contour(&self) -> Contour {
         let crossing = |edge| self.crossing(edge);
-        contour(&self.lattice, &self.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap()
+        contour(&self.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap()
     }
 }
 
 impl Case {
     /// A contour after the collapse, with planes that have nothing to do with the surface.
     pub fn collapsed(&self, raw: Contour) -> Collapsed {
-        let planes = |triangle: u32| {
+        let planes = |ground: Ground| {
+            let Ground::Triangle(triangle) = ground else { return None };
             let n = [0, 1, 2, 3].map(|k| noise(self.seed, IVec3::splat(triangle as i32), 64 + k));
             let normal = (DVec3::new(n[0], n[1], n[2]) - 0.5).try_normalize()?;
             let centre = self.lattice.to_model(self.lattice.dims.as_dvec3() * n[3]);
-            (!triangle.is_multiple_of(5)).then_some((normal, normal.dot(centre)))
+            (!triangle.is_multiple_of(5)).then_some(Plane { normal, offset: normal.dot(centre) })
         };
         collapse_same_voxel(raw, &self.lattice, &planes, Merge::All, &Progress::none()).unwrap()
     }

@@ -11,35 +11,22 @@ use meshwright::sdf::characteristics::{characteristics, cost};
 use meshwright::sdf::exact::{Band, ExactError, ExactOptions};
 use proptest::prelude::*;
 
-use crate::common::exact::{check_characteristics, lattice};
-use crate::common::shapes::{ball, gear, hard, knot, torus, turned};
-use crate::common::{read, sample};
+use crate::common::exact::{Case, cases, check_characteristics, lattice};
+use crate::common::shapes::{ball, hard, torus, turned};
 
 fn options(band: Band) -> ExactOptions {
     ExactOptions { band, max_memory: None }
 }
 
 fn field(mesh: &TriMesh, lattice: &Lattice, band: Band) -> Grid<f32> {
-    characteristics(mesh, lattice, &options(band), &Progress::none()).expect("a field")
+    characteristics(mesh, lattice, &options(band), &Progress::none()).expect("a field").grid
 }
 
 #[test]
-fn hard_meshes_have_the_exact_field() {
-    for (name, mesh) in hard() {
-        let within = check_characteristics(name, &mesh, &lattice(&mesh, 1.0 / 30.0, 4), Band::Within(4.0));
+fn hard_meshes_and_parts_have_the_exact_field() {
+    for Case { name, mesh, lattice, band } in cases() {
+        let within = check_characteristics(name, &mesh, &lattice, Band::Within(band));
         assert!(within > 1000, "{name}: {within}");
-    }
-}
-
-#[test]
-fn parts_and_files_have_the_exact_field() {
-    let saddle = read(&sample("monkey_saddle.off"));
-    for (name, mesh, band) in
-        [("saddle", saddle, 6.4), ("knot", knot(96, 16), 6.4), ("gear", turned(gear(24), 0.3), 3.0)]
-    {
-        let h = mesh.bounds().expect("triangles").size().max_element() / 64.0;
-        let within = check_characteristics(name, &mesh, &lattice(&mesh, h, 7), Band::Within(band));
-        assert!(within > 10_000, "{name}: {within}");
     }
 }
 

@@ -10,21 +10,21 @@ use meshwright::progress::{Progress, Stopped};
 use meshwright::sdf::exact::{Band, ExactDistance, ExactError, ExactOptions, PointSign, Sign, cost, exact};
 use proptest::prelude::*;
 
-use crate::common::exact::{check_lattice, lattice, winding};
-use crate::common::shapes::{ball, gear, hard, knot, stack, torus, turned};
+use crate::common::exact::{Case, cases, check_lattice, lattice, winding};
+use crate::common::shapes::{ball, hard, torus, turned};
 
 fn options(band: Band) -> ExactOptions {
     ExactOptions { band, max_memory: None }
 }
 
 fn field(mesh: &TriMesh, lattice: &Lattice, band: Band) -> Grid<f32> {
-    exact(mesh, lattice, Sign::Pseudonormal, &options(band), &Progress::none()).expect("a field")
+    exact(mesh, lattice, Sign::Pseudonormal, &options(band), &Progress::none()).expect("a field").grid
 }
 
 #[test]
-fn all_voxels_of_hard_meshes_are_as_the_points() {
-    for (name, mesh) in hard() {
-        let within = check_lattice(name, &mesh, &lattice(&mesh, 1.0 / 30.0, 4), Band::Within(4.0));
+fn all_voxels_of_hard_meshes_and_parts_are_as_the_points() {
+    for Case { name, mesh, lattice, band } in cases() {
+        let within = check_lattice(name, &mesh, &lattice, Band::Within(band));
         assert!(within > 1000, "{name}: {within}");
     }
 }
@@ -54,16 +54,6 @@ fn a_lattice_that_cuts_the_body_or_misses_it() {
     let grid = field(&ball(2, |_| 1.0), &inside, Band::Within(2.0));
     assert_eq!(grid.bricks.len(), 0);
     assert_eq!((grid.get(IVec3::ZERO), grid.get(IVec3::new(39, 20, 3))), (-2.0, -2.0));
-}
-
-#[test]
-fn parts_of_any_shape() {
-    for (name, mesh, resolution) in
-        [("knot", knot(96, 16), 60.0), ("gear", turned(gear(24), 0.3), 60.0), ("stack", stack(0.4), 40.0)]
-    {
-        let h = mesh.bounds().expect("triangles").size().max_element() / resolution;
-        check_lattice(name, &mesh, &lattice(&mesh, h, 3), Band::Within(3.0));
-    }
 }
 
 #[test]

@@ -17,7 +17,7 @@ fn levels(mesh: &TriMesh, lattice: &Lattice) -> Levels {
 
 fn field(mesh: &TriMesh, lattice: &Lattice, sign: Sign<'_>, band: Band) -> Grid<f32> {
     let options = ExactOptions { band, max_memory: None };
-    exact(mesh, lattice, sign, &options, &Progress::none()).expect("a field")
+    exact(mesh, lattice, sign, &options, &Progress::none()).expect("a field").grid
 }
 
 #[test]

@@ -7,30 +7,18 @@ use meshwright::sdf::exact::{Band, ExactOptions};
 use meshwright::sdf::prism::prism;
 use proptest::prelude::*;
 
-use crate::common::exact::{from_prisms, lattice};
-use crate::common::shapes::{ball, gear, hard, knot, turned};
+use crate::common::exact::{Case, cases, from_prisms, lattice};
+use crate::common::shapes::{ball, turned};
 
 #[test]
-fn prisms_give_the_exact_field_of_hard_meshes() {
-    for (name, mesh) in hard() {
-        // Nothing in single precision tells the sides of sheets 1e-7 apart.
-        if name.starts_with("sheets") {
-            continue;
-        }
-        for (h, band) in [(0.05, 3.0), (0.021, 12.0)] {
-            let (most, wrong, count) = from_prisms(&mesh, &lattice(&mesh, h, band as i32), band);
-            assert!(most < 1e-4 && wrong == 0 && count > 1000, "{name} {h}: {most} h, {wrong} of {count} sides");
-        }
-    }
-}
-
-#[test]
-fn prisms_give_the_exact_field_of_a_knot_and_of_a_part_at_64_and_128() {
-    for (name, mesh) in [("knot", knot(96, 16)), ("gear", turned(gear(24), 0.3))] {
-        let longest = mesh.bounds().expect("triangles").size().max_element();
-        for (resolution, band) in [(64.0, 6.4), (128.0, 12.8)] {
-            let (most, wrong, count) = from_prisms(&mesh, &lattice(&mesh, longest / resolution, 13), band);
-            assert!(most < 1e-4 && wrong == 0, "{name} {resolution}: {most} h, {wrong} of {count} sides");
+fn prisms_give_the_exact_field_of_hard_meshes_and_parts() {
+    // Nothing in single precision tells the sides of sheets 1e-7 apart.
+    for Case { name, mesh, lattice: near, band } in cases().into_iter().filter(|case| !case.name.starts_with("sheets"))
+    {
+        let wide = lattice(&mesh, 0.6 * near.h, 12);
+        for (around, band) in [(near, band), (wide, 12.0)] {
+            let (most, wrong, count) = from_prisms(&mesh, &around, band);
+            assert!(most < 1e-4 && wrong == 0 && count > 1000, "{name} {band}: {most} h, {wrong} of {count} sides");
         }
     }
 }
@@ -55,7 +43,7 @@ fn the_number_of_threads_changes_nothing() {
     let of = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
         let field = pool.install(|| prism(&mesh, &lattice(&mesh, 0.02, 5), &options, &Progress::none()));
-        field.expect("a field").values.concat().iter().map(|value| value.to_bits()).collect::<Vec<u32>>()
+        field.expect("a field").grid.values.concat().iter().map(|value| value.to_bits()).collect::<Vec<u32>>()
     };
     assert_eq!(of(1), of(3));
 }

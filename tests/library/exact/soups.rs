@@ -8,7 +8,8 @@ use meshwright::progress::Progress;
 use meshwright::sdf::exact::{Band, ExactDistance, ExactOptions, PointSign, Sign, exact};
 use meshwright::vote::{VoteRule, Winding};
 
-use crate::common::exact::{lattice, voxel, winding};
+use crate::common::exact::{lattice, winding};
+use crate::common::fields::voxel;
 use crate::common::shapes::ball;
 use crate::common::{shapes, stages};
 
@@ -22,7 +23,7 @@ fn soup() -> TriMesh {
 
 fn field(mesh: &TriMesh, lattice: &Lattice, sign: Sign<'_>, band: Band) -> Grid<f32> {
     let options = ExactOptions { band, max_memory: None };
-    exact(mesh, lattice, sign, &options, &Progress::none()).expect("a field")
+    exact(mesh, lattice, sign, &options, &Progress::none()).expect("a field").grid
 }
 
 /// All voxels of the lattice, and the distance of each from the triangles in h.

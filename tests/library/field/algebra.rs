@@ -29,7 +29,7 @@ fn levels_of_all_shapes_are_valid_and_lie_on_the_level() {
         assert!(!level.contour.mesh.triangles.is_empty(), "{name}");
         let off = level.contour.mesh.positions.iter().map(|&p| field.value(p).abs()).fold(0.0, f64::max);
         // Vertices keep a hundredth of a voxel from the ends of lattice edges.
-        assert!(off < 0.0101 * h * field.steepness().min(8.0) + 1e-6, "{name}: {} h", off / h);
+        assert!(off < 0.0101 * h * field.lipschitz().min(8.0) + 1e-6, "{name}: {} h", off / h);
     }
 }
 
@@ -164,8 +164,8 @@ fn a_blurred_plane_is_the_plane_and_a_blurred_box_is_rounder() {
     let sigma = 2.0 * h;
     let blur = |field: &Shared| {
         let options = FillOptions { band: Some(blur_band(sigma)), max_memory: None };
-        let grid = fill(&**field, &lattice, &options, &Progress::none()).unwrap();
-        Sampled::new(blurred(&grid, &lattice, sigma, &Progress::none()).unwrap(), lattice)
+        let sharp = fill(&**field, &lattice, &options, &Progress::none()).unwrap();
+        Sampled::new(blurred(&sharp, sigma, &Progress::none()).unwrap())
     };
     use meshwright::field::Field;
     let plane = blur(&body(Solid::HalfSpace, [0.0, 0.0, 0.013]));

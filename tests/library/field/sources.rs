@@ -1,4 +1,4 @@
-//! What every field promises: packets, ranges, steepness, gradients, filling.
+//! What every field promises: packets, ranges, Lipschitz bound, gradients, filling.
 
 use glam::{DVec3, IVec3};
 use meshwright::field::{Ball, Extent, FillOptions, Sample, fill, scattered};
@@ -94,7 +94,7 @@ fn values_stay_in_their_ranges() {
 #[test]
 fn no_field_is_steeper_than_it_says() {
     for (name, field) in all() {
-        let most = field.steepness();
+        let most = field.lipschitz();
         let points = places(150, 17);
         for pair in points.windows(2) {
             let [a, b] = [field.value(pair[0]), field.value(pair[1])];
@@ -122,7 +122,8 @@ fn filling_finds_all_values_in_the_band_and_all_sides() {
     let lattice = lattice(0.1);
     for (name, field) in all() {
         for band in [Some(0.25), None] {
-            let grid = fill(&*field, &lattice, &FillOptions { band, max_memory: None }, &Progress::none()).unwrap();
+            let grid =
+                fill(&*field, &lattice, &FillOptions { band, max_memory: None }, &Progress::none()).unwrap().grid;
             let band = band.unwrap_or(f64::INFINITY);
             let voxels = lattice.dims.element_product();
             for n in (0..voxels).step_by(7) {
@@ -146,7 +147,7 @@ fn filling_follows_the_surface_and_refuses_what_does_not_fit() {
     let stored = |h: f64, max_memory: Option<u64>| {
         let lattice = Lattice::around(&torus.extent().bounds().unwrap(), h);
         let options = FillOptions { band: Some(1.8 * h), max_memory };
-        fill(&*torus, &lattice, &options, &Progress::none()).map(|grid| grid.values.len())
+        fill(&*torus, &lattice, &options, &Progress::none()).map(|field| field.grid.values.len())
     };
     let (coarse, fine) = (stored(0.02, None).unwrap(), stored(0.01, None).unwrap());
     assert!(fine < 5 * coarse, "{coarse} bricks, and {fine} at half the spacing");
@@ -161,7 +162,7 @@ fn what_is_inside_without_an_end_is_inside() {
     let all = all();
     let (_, field) = all.iter().find(|(name, _)| *name == "complement").unwrap();
     let options = FillOptions { band: Some(0.1), max_memory: None };
-    let grid = fill(&**field, &lattice, &options, &Progress::none()).unwrap();
+    let grid = fill(&**field, &lattice, &options, &Progress::none()).unwrap().grid;
     assert_eq!(grid.bricks.slot(brick_of(IVec3::ONE)), Slot::Inside);
     assert_eq!(grid.bricks.slot(brick_of(lattice.dims / 2)), Slot::Outside);
 }

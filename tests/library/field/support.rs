@@ -67,7 +67,7 @@ pub fn all() -> Vec<(&'static str, Shared)> {
         ("half space", body(Solid::HalfSpace, [0.0, 0.0, 0.2])),
         ("mesh", torus()),
         ("points", Arc::new(PointField::new(&scattered(40, 5, &room())))),
-        ("sampled", Arc::new(Sampled::new(grid.unwrap(), lattice(0.1)))),
+        ("sampled", Arc::new(Sampled::new(grid.unwrap()))),
         ("offset", offset(torus(), 0.2)),
         ("shell", shell(torus(), 0.2)),
         ("complement", complement(ball())),

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use meshwright::io::{
-    Carried, Colours, Format, Loaded, ReadProblem, Rgba, WriteOptions, WriteProblem, encode_coloured, read_bytes,
+    Carried, Colours, FileProblem, Format, Loaded, Rgba, WriteOptions, WriteProblem, encode_coloured, read_bytes,
 };
 use meshwright::mesh::TriMesh;
 use proptest::prelude::*;
@@ -189,7 +189,7 @@ fn ply_colours_that_make_no_sense() {
     assert_eq!(loaded.colours, Some(Colours::Vertices(vec![[0, 0, 255, 255], [0, 7, 0, 255], [1, 2, 3, 255]])));
     assert_eq!(loaded.warnings, ["2 colours out of range taken as the nearest in range"]);
     let error = read_bytes(&ply("ascii", "uchar", "red green blue", &[b"0 0 0 1 red 3\n"]), None, None).unwrap_err();
-    assert!(matches!(*error.problem, ReadProblem::Syntax { .. } | ReadProblem::Truncated { .. }), "{error}");
+    assert!(matches!(*error.problem, FileProblem::Syntax { .. } | FileProblem::Truncated { .. }), "{error}");
     // Two of three are none.
     let body = b"0 0 0 1 2\n1 0 0 1 2\n0 1 0 1 2\n3 0 1 2\n";
     assert_eq!(load(ply("ascii", "uchar", "red green", &[body]), Format::Ply).colours, None);
@@ -236,18 +236,18 @@ fn gltf_colours_that_lie() {
     let refuse = |from: &str, to: &str| {
         assert!(compact.contains(from), "{from}");
         let error = read_bytes(compact.replacen(from, to, 1).as_bytes(), None, None).unwrap_err();
-        (error.place.as_ref().map(ToString::to_string).unwrap_or_default(), *error.problem)
+        (error.location.as_ref().map(ToString::to_string).unwrap_or_default(), *error.problem)
     };
     let (place, problem) = refuse(r#""COLOR_0":1"#, r#""COLOR_0":9"#);
-    assert!(matches!((place.as_str(), problem), ("meshes[0]", ReadProblem::IndexOutOfRange { .. })));
+    assert!(matches!((place.as_str(), problem), ("meshes[0]", FileProblem::IndexOutOfRange { .. })));
     let (place, problem) = refuse(r#""COLOR_0":1"#, r#""COLOR_0":3"#);
-    assert!(matches!((place.as_str(), problem), ("accessors[3]", ReadProblem::Syntax { .. })));
+    assert!(matches!((place.as_str(), problem), ("accessors[3]", FileProblem::Syntax { .. })));
     let (place, problem) = refuse(r#""normalized":true,"count":4"#, r#""normalized":true,"count":2"#);
-    assert!(matches!((place.as_str(), problem), ("accessors[1]", ReadProblem::Truncated { .. })));
+    assert!(matches!((place.as_str(), problem), ("accessors[1]", FileProblem::Truncated { .. })));
     let (place, problem) = refuse(r#""normalized":true,"count":4"#, r#""count":18446744073709551615"#);
-    assert!(matches!((place.as_str(), problem), ("accessors[1]", ReadProblem::TooLarge { .. })));
+    assert!(matches!((place.as_str(), problem), ("accessors[1]", FileProblem::TooLarge { .. })));
     let (place, problem) = refuse(r#""material":0"#, r#""material":7"#);
-    assert!(matches!((place.as_str(), problem), ("meshes[0]", ReadProblem::IndexOutOfRange { .. })));
+    assert!(matches!((place.as_str(), problem), ("meshes[0]", FileProblem::IndexOutOfRange { .. })));
 }
 
 fn model(text: &[u8]) -> Vec<u8> {
@@ -298,7 +298,7 @@ fn three_mf_colours_that_lie() {
     ] {
         let error = changed(from, to).unwrap_err();
         assert!(error.to_string().contains("3D/3dmodel.model, byte"), "{error}");
-        assert!(matches!(*error.problem, ReadProblem::Syntax { .. }), "{error}");
+        assert!(matches!(*error.problem, FileProblem::Syntax { .. }), "{error}");
     }
     // Entries and groups that are not there: the mesh is sound without them.
     for (from, to) in [("p2=\"1\"", "p2=\"2\""), ("pid=\"6\" p1", "pid=\"99\" p1")] {
@@ -356,6 +356,6 @@ fn colours_take_no_memory_that_the_file_does_not_justify() {
          property float z\n{channels}element face 4000000000\nproperty list uchar int vertex_indices\n{channels}end_header\n"
     );
     let (result, peak) = super::memory::peak_of(|| read_bytes(file.as_bytes(), None, None));
-    assert!(matches!(*result.unwrap_err().problem, ReadProblem::Truncated { .. }));
+    assert!(matches!(*result.unwrap_err().problem, FileProblem::Truncated { .. }));
     assert!(peak < 1 << 20, "{peak}");
 }

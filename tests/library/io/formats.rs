@@ -118,7 +118,7 @@ fn ply_says_the_same_in_all_encodings() {
 fn gltf_nodes_place_their_meshes() {
     let seed = |name: &str| {
         let path = format!("{}/fuzz/seeds/{name}", env!("CARGO_MANIFEST_DIR"));
-        load(std::fs::read(&path).unwrap(), Format::from_path(path.as_ref()).unwrap())
+        load(std::fs::read(&path).unwrap(), Format::from_path(path).unwrap())
     };
     let loaded = seed("gltf/nodes.gltf");
     assert_eq!(names(&loaded), [("mirror", 4), ("m", 12)]);
@@ -207,6 +207,6 @@ fn three_mf_without_a_build_gives_its_objects() {
 #[test]
 fn three_mf_models_may_lie_in_several_files() {
     let path = format!("{}/fuzz/seeds/three_mf/package.3mf", env!("CARGO_MANIFEST_DIR"));
-    let loaded = read(path.as_ref()).unwrap();
+    let loaded = read(path).unwrap();
     assert_eq!(names(&loaded), [("a & b", 4), ("a & b", 4)]);
 }

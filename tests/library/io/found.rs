@@ -1,7 +1,7 @@
 //! Files as users have them: what they hold is read, and what is not read is named.
 
 use glam::DVec3;
-use meshwright::io::{Colours, Format, Loaded, ReadProblem, WriteOptions, read, read_bytes};
+use meshwright::io::{Colours, FileProblem, Format, Loaded, WriteOptions, read, read_bytes};
 use meshwright::mesh::TriMesh;
 
 use super::memory::peak_of;
@@ -16,7 +16,7 @@ pub fn load(bytes: impl AsRef<[u8]>) -> Loaded {
 }
 
 #[track_caller]
-pub fn problem(bytes: impl AsRef<[u8]>, name: &str) -> ReadProblem {
+pub fn problem(bytes: impl AsRef<[u8]>, name: &str) -> FileProblem {
     *read_bytes(bytes.as_ref(), None, Some(name.as_ref())).expect_err("no mesh").problem
 }
 
@@ -91,7 +91,7 @@ fn a_vertex_nowhere_that_no_face_uses_costs_no_face() {
     assert_eq!(corners(&loaded.mesh), [[DVec3::ZERO, DVec3::X, DVec3::Y]]);
     assert_eq!(loaded.warnings, ["1 vertex with a coordinate that is no finite number left out, and 0 faces there"]);
     let all = problem("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj");
-    assert!(matches!(&all, ReadProblem::NothingLeft(what) if what.contains("1 vertex")), "{all}");
+    assert!(matches!(&all, FileProblem::NothingLeft(what) if what.contains("1 vertex")), "{all}");
 }
 
 /// Polygons at a vertex nowhere go as a whole; parts and colours stay with their triangles.
@@ -170,7 +170,7 @@ fn words_that_trail_in_text_stl_are_passed_over() {
     assert_eq!(loaded.warnings, ["8 words after the end of a statement left out"]);
     // A line that begins with such a word is damage.
     let damaged = problem(clean.replacen("facet normal", "fasset normal", 2), "a.stl");
-    assert!(matches!(damaged, ReadProblem::Syntax { .. }), "{damaged}");
+    assert!(matches!(damaged, FileProblem::Syntax { .. }), "{damaged}");
 }
 
 // Texts in other encodings.
@@ -242,7 +242,7 @@ fn point_clouds_are_named_as_such() {
     let obj = b"v 0 0 0\nv 1 1 1\np 1 2\n";
     for bytes in [ply.as_bytes(), gltf, obj, b"v 0 0 0\nv 1 1 1\n", b"OFF\n2 0 0\n0 0 0\n1 1 1\n"] {
         let found = problem(bytes, "cloud.obj");
-        assert!(matches!(found, ReadProblem::PointCloud { points: 2 }), "{found}");
+        assert!(matches!(found, FileProblem::PointCloud { points: 2 }), "{found}");
         assert!(found.to_string().starts_with("a point cloud: "), "{found}");
     }
 }
@@ -301,7 +301,7 @@ fn instances_are_placed() {
         [accessor(5126, "VEC3", 0, ""), accessor(5126, "VEC3", 0, "").replace("\"count\":2", "\"count\":1")];
     let numbers = floats(&[0.0; 6]);
     let lie = instanced(r#""TRANSLATION":1,"SCALE":2"#, &accessors.join(","), &numbers, "");
-    assert!(matches!(problem(lie, "a.gltf"), ReadProblem::Syntax { .. }));
+    assert!(matches!(problem(lie, "a.gltf"), FileProblem::Syntax { .. }));
 }
 
 /// As many instances as a number can say, of nothing.
@@ -311,7 +311,7 @@ fn instances_without_end_are_refused() {
     let accessor = format!(r#"{{"componentType":5126,"count":{count},"type":"VEC3"}}"#);
     let lie = instanced(r#""TRANSLATION":1"#, &accessor, &[0; 4], "");
     let (result, peak) = peak_of(|| read_bytes(&lie, None, None));
-    assert!(matches!(*result.unwrap_err().problem, ReadProblem::TooLarge { .. }));
+    assert!(matches!(*result.unwrap_err().problem, FileProblem::TooLarge { .. }));
     assert!(peak < 400 << 20, "{peak}");
 }
 
@@ -386,6 +386,6 @@ fn buffers_come_from_the_own_folder_and_no_more_than_is_declared() {
         let error = with(uri).expect_err(uri);
         let words = error.to_string();
         assert!(words.contains("buffers[0]") && !words.contains("os error"), "{uri}: {words}");
-        assert!(matches!(*error.problem, ReadProblem::Unsupported(_) | ReadProblem::Io(_)), "{uri}: {words}");
+        assert!(matches!(*error.problem, FileProblem::Unsupported(_) | FileProblem::Io(_)), "{uri}: {words}");
     }
 }

@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use meshwright::io::{GridFormat, GridReadProblem, GridValues, read_grid_bytes};
+use meshwright::io::{FileProblem, GridFormat, GridValues, Wanted, read_grid_bytes};
 use proptest::prelude::*;
 
 use super::grids::small;
@@ -13,7 +13,7 @@ use super::mutants::{apply, change};
 
 /// The problem of a file that must not read, and which may take 64 times its length and 1 MB.
 #[track_caller]
-fn refuse(bytes: &[u8], format: GridFormat, words: &str) -> GridReadProblem {
+fn refuse(bytes: &[u8], format: GridFormat, words: &str) -> FileProblem {
     let (result, peak) = peak_of(|| read_grid_bytes(bytes, Some(format), Some("lies.bin".as_ref())));
     let error = result.expect_err("a file that lies is refused");
     let text = error.to_string();
@@ -33,15 +33,15 @@ fn with(format: GridFormat, from: &str, to: &str) -> Vec<u8> {
 #[test]
 fn nothing_is_no_lattice() {
     for format in GridFormat::ALL {
-        assert!(matches!(refuse(b"", format, "empty"), GridReadProblem::Empty));
+        assert!(matches!(refuse(b"", format, "empty"), FileProblem::Empty));
         for bytes in [b"\n".as_slice(), &[0; 300], &[0xff; 300], b"solid a\n"] {
-            assert!(matches!(refuse(bytes, format, "expected"), GridReadProblem::Syntax { .. }));
+            assert!(matches!(refuse(bytes, format, "expected"), FileProblem::Syntax { .. }));
         }
     }
     let error = read_grid_bytes(b"who knows", None, None).unwrap_err();
-    assert!(matches!(*error.problem, GridReadProblem::UnknownFormat), "{error}");
-    let error = meshwright::io::read_grid("absent/file.vti".as_ref()).unwrap_err();
-    assert!(error.to_string().contains("absent/file.vti") && matches!(*error.problem, GridReadProblem::Io(_)));
+    assert!(matches!(*error.problem, FileProblem::UnknownFormat(Wanted::Grid)), "{error}");
+    let error = meshwright::io::read_grid("absent/file.vti").unwrap_err();
+    assert!(error.to_string().contains("absent/file.vti") && matches!(*error.problem, FileProblem::Io(_)));
 }
 
 #[test]
@@ -50,7 +50,7 @@ fn voxels_must_be_cubes_along_the_axes() {
     let spacing = "Spacing=\"0.25 0.25 0.25\"";
     for (format, from, to) in [(Vti, spacing, "Spacing=\"0.25 0.25 0.5\""), (Nrrd, "(0,0.25,0)", "(0,0.5,0)")] {
         let problem = refuse(&with(format, from, to), format, "one spacing for all axes is needed");
-        assert!(matches!(problem, GridReadProblem::Anisotropic(spacing) if spacing[0] == 0.25), "{problem}");
+        assert!(matches!(problem, FileProblem::Anisotropic(spacing) if spacing[0] == 0.25), "{problem}");
     }
     let turned = "Direction=\"0 1 0 1 0 0 0 0 1\"";
     for (format, from, to) in [
@@ -59,7 +59,7 @@ fn voxels_must_be_cubes_along_the_axes() {
         (Nrrd, "(0,0.25,0)", "(0,-0.25,0)"),
     ] {
         let problem = refuse(&with(format, from, to), format, "are turned, sheared or mirrored");
-        assert!(matches!(problem, GridReadProblem::Turned(_)), "{problem}");
+        assert!(matches!(problem, FileProblem::Turned(_)), "{problem}");
     }
     for (format, from, to) in [(Vti, spacing, "Spacing=\"0 0 0\""), (Vti, spacing, "Spacing=\"nan 1 1\"")] {
         refuse(&with(format, from, to), format, "a spacing above zero");
@@ -80,7 +80,7 @@ fn what_is_not_read_says_what_to_do() {
         (Vdb, "UniformScaleTranslateMap", "UniformNonlinearFrustMap", "resample the grid"),
     ] {
         let problem = refuse(&with(format, from, to), format, words);
-        assert!(matches!(problem, GridReadProblem::Unsupported(_)), "{problem}");
+        assert!(matches!(problem, FileProblem::Unsupported(_)), "{problem}");
     }
     let mut old = small(Vdb);
     old[8] = 220;
@@ -121,7 +121,7 @@ fn values_must_be_finite() {
         let end = bytes.len() - at;
         bytes[end..end + 4].copy_from_slice(&f32::NAN.to_le_bytes());
         let problem = refuse(&bytes, format, "a finite value expected at voxel 2 1 3");
-        assert!(matches!(problem, GridReadProblem::NotFinite { voxel: [2, 1, 3], .. }), "{problem}");
+        assert!(matches!(problem, FileProblem::NotFiniteVoxel { voxel: [2, 1, 3], .. }), "{problem}");
     }
     let mut bytes = small(GridFormat::Vdb);
     let end = bytes.len() - 4;

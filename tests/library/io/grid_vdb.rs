@@ -5,7 +5,7 @@ use meshwright::io::{GridFile, GridFormat, GridValues, read_grid};
 
 fn read(name: &str) -> GridFile {
     let path = format!("{}/tests/io/openvdb/{name}.vdb", env!("CARGO_MANIFEST_DIR"));
-    read_grid(path.as_ref()).unwrap_or_else(|error| panic!("{error}"))
+    read_grid(path).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The largest difference from the ball that is in most files.

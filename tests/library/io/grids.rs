@@ -55,10 +55,10 @@ fn a_plane_of_the_wrong_size_leaves_no_file() {
     let whole = |z: usize, values: &mut Vec<f32>| values.extend((0..6).map(|k| number(z, k)));
     for format in GridFormat::ALL {
         let path = folder.path().join(format!("a.{format}"));
-        let error = write_grid(&path, &samples(&short), format).expect_err("plane 3 is short").to_string();
+        let error = write_grid(&path, &samples(&short)).expect_err("plane 3 is short").to_string();
         assert!(error.contains("plane 3 has 5 values") && error.contains(&format!("a.{format}")), "{error}");
         assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 0);
-        write_grid(&path, &samples(&whole), format).expect("it can be written");
+        write_grid(&path, &samples(&whole)).expect("it can be written");
         let read = meshwright::io::read_grid(&path).expect("it can be read");
         assert_eq!((read.format, read.dims), (format, [3, 2, 4]));
         std::fs::remove_file(path).expect("it is there");
@@ -70,12 +70,12 @@ fn names_of_formats() {
     for format in GridFormat::ALL {
         assert_eq!(format.to_string().parse(), Ok(format));
         let path = format!("a.b/c.{}", format.name().to_uppercase());
-        assert_eq!(GridFormat::from_path(path.as_ref()), Some(format));
+        assert_eq!(GridFormat::from_path(&path), Some(format));
         assert_eq!(GridFormat::detect(&small(format), Some("lies.stl".as_ref())), Some(format));
         assert_eq!(GridFormat::detect(b"who knows", Some(path.as_ref())), Some(format));
     }
     assert!("mha".parse::<GridFormat>().is_err());
-    assert_eq!(GridFormat::from_path("nrrd".as_ref()), None);
+    assert_eq!(GridFormat::from_path("nrrd"), None);
     assert_eq!(GridFormat::detect(b"solid a", None), None);
 }
 

@@ -1,6 +1,6 @@
 //! Files that lie: a typed error with the place, within the memory and time that their length justifies.
 
-use meshwright::io::{Format, Place, ReadProblem, read_bytes};
+use meshwright::io::{FileProblem, Format, Location, Wanted, read_bytes};
 
 use super::memory::peak_of;
 use super::support::{encoded, tetrahedron, zipped};
@@ -8,17 +8,17 @@ use meshwright::io::WriteOptions;
 
 /// The place and problem of a file that must not read, and which may take 64 times its length and 1 MB.
 #[track_caller]
-fn refuse(bytes: impl AsRef<[u8]>, format: Format) -> (Option<Place>, ReadProblem) {
+fn refuse(bytes: impl AsRef<[u8]>, format: Format) -> (Option<Location>, FileProblem) {
     let bytes = bytes.as_ref();
     let (result, peak) = peak_of(|| read_bytes(bytes, Some(format), Some("lies.bin".as_ref())));
     let error = result.expect_err("a file that lies is refused");
     assert!(error.to_string().starts_with("lies.bin: "), "{error}");
     assert!(peak <= 64 * bytes.len() + (1 << 20), "{peak} bytes for {}: {error}", bytes.len());
-    (error.place, *error.problem)
+    (error.location, *error.problem)
 }
 
 #[track_caller]
-fn refuse_at(bytes: impl AsRef<[u8]>, format: Format, place: Place) -> ReadProblem {
+fn refuse_at(bytes: impl AsRef<[u8]>, format: Format, place: Location) -> FileProblem {
     let (found, problem) = refuse(bytes, format);
     assert_eq!(found, Some(place), "{problem}");
     problem
@@ -34,14 +34,14 @@ macro_rules! assert_is {
 #[test]
 fn nothing_is_no_mesh() {
     for format in Format::ALL {
-        assert_is!(refuse("", format).1, ReadProblem::Empty);
+        assert_is!(refuse("", format).1, FileProblem::Empty);
         refuse("\n", format);
         refuse([0; 3], format);
         refuse([0xff; 300], format);
     }
     let error = read_bytes(b"who knows", None, None).unwrap_err();
-    assert_is!(*error.problem, ReadProblem::UnknownFormat);
-    assert!(meshwright::io::read("absent/file.stl".as_ref()).unwrap_err().to_string().contains("absent/file.stl"));
+    assert_is!(*error.problem, FileProblem::UnknownFormat(Wanted::Mesh));
+    assert!(meshwright::io::read("absent/file.stl").unwrap_err().to_string().contains("absent/file.stl"));
 }
 
 fn stl(stated: u32, facets: usize, extra: usize) -> Vec<u8> {
@@ -56,16 +56,16 @@ fn stl(stated: u32, facets: usize, extra: usize) -> Vec<u8> {
 
 #[test]
 fn binary_stl_that_lies_about_its_count() {
-    let ends = |length: u64| Place::Byte(length);
+    let ends = |length: u64| Location::Byte(length);
     for (stated, facets, extra) in [(u32::MAX, 0, 0), (5, 4, 0), (5, 4, 49), (u32::MAX, 4, 17), (1, 0, 0)] {
         let bytes = stl(stated, facets, extra);
         let length = bytes.len() as u64;
-        assert_is!(refuse_at(bytes, Format::Stl, ends(length)), ReadProblem::Truncated { .. });
+        assert_is!(refuse_at(bytes, Format::Stl, ends(length)), FileProblem::Truncated { .. });
     }
     // Never filled in, and then cut within a facet.
-    assert_is!(refuse_at(stl(0, 4, 10), Format::Stl, ends(294)), ReadProblem::Truncated { .. });
-    assert_is!(refuse(stl(0, 0, 0), Format::Stl).1, ReadProblem::NoTriangles);
-    assert_is!(refuse_at(&stl(4, 4, 0)[..83], Format::Stl, ends(83)), ReadProblem::Truncated { .. });
+    assert_is!(refuse_at(stl(0, 4, 10), Format::Stl, ends(294)), FileProblem::Truncated { .. });
+    assert_is!(refuse(stl(0, 0, 0), Format::Stl).1, FileProblem::NoTriangles);
+    assert_is!(refuse_at(&stl(4, 4, 0)[..83], Format::Stl, ends(83)), FileProblem::Truncated { .. });
 
     let accept = |bytes: Vec<u8>| {
         let loaded = read_bytes(&bytes, None, Some("a.stl".as_ref())).unwrap();
@@ -81,51 +81,54 @@ fn binary_stl_that_lies_about_its_count() {
 #[test]
 fn stl_that_is_broken_inside() {
     let head = "solid x\nfacet normal 0 0 1\nouter loop\n";
-    let line = |text: &str, line| refuse_at(format!("{head}{text}"), Format::Stl, Place::Line(line));
-    assert_is!(line("vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n", 7), ReadProblem::Truncated { .. });
-    assert_is!(line("vertex 0 0 0\nvertex 1", 5), ReadProblem::Truncated { .. });
-    assert_is!(line("vertex 0 0 0\nvertex 1 0\nvertex 0 1 0\n", 6), ReadProblem::Syntax { .. });
-    assert_is!(line("vertex 0 0 1,5\n", 4), ReadProblem::Syntax { .. });
-    assert_is!(line("vertex 0 0 0\nendloop\nendfacet", 5), ReadProblem::Syntax { .. });
-    assert_is!(refuse_at("solid\nfacet normal 0 0 1 vertex", Format::Stl, Place::Line(2)), ReadProblem::Syntax { .. });
-    assert_is!(refuse_at("solid a\nendsolid\nfact\n", Format::Stl, Place::Line(3)), ReadProblem::Syntax { .. });
-    assert_is!(refuse("solid a\nendsolid a\n", Format::Stl).1, ReadProblem::NoTriangles);
+    let line = |text: &str, line| refuse_at(format!("{head}{text}"), Format::Stl, Location::Line(line));
+    assert_is!(line("vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n", 7), FileProblem::Truncated { .. });
+    assert_is!(line("vertex 0 0 0\nvertex 1", 5), FileProblem::Truncated { .. });
+    assert_is!(line("vertex 0 0 0\nvertex 1 0\nvertex 0 1 0\n", 6), FileProblem::Syntax { .. });
+    assert_is!(line("vertex 0 0 1,5\n", 4), FileProblem::Syntax { .. });
+    assert_is!(line("vertex 0 0 0\nendloop\nendfacet", 5), FileProblem::Syntax { .. });
+    assert_is!(
+        refuse_at("solid\nfacet normal 0 0 1 vertex", Format::Stl, Location::Line(2)),
+        FileProblem::Syntax { .. }
+    );
+    assert_is!(refuse_at("solid a\nendsolid\nfact\n", Format::Stl, Location::Line(3)), FileProblem::Syntax { .. });
+    assert_is!(refuse("solid a\nendsolid a\n", Format::Stl).1, FileProblem::NoTriangles);
 }
 
 #[test]
 fn obj_that_lies() {
     let line =
-        |text: &str, line| refuse_at(format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{text}"), Format::Obj, Place::Line(line));
+        |text: &str, line| refuse_at(format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{text}"), Format::Obj, Location::Line(line));
     for face in ["f 1 2 0", "f 1 2 4", "f 1 2 -4", "f 1 2 4294967296", "f 1 2 -9223372036854775808", "f 1 2 4 3"] {
-        assert_is!(line(&format!("f 1 2 3\n{face}\n"), 5), ReadProblem::IndexOutOfRange { .. });
+        assert_is!(line(&format!("f 1 2 3\n{face}\n"), 5), FileProblem::IndexOutOfRange { .. });
     }
     for face in ["f 1 2 x", "f 1 2 /3", "f 1 2 99999999999999999999", "f 1.5 2 3"] {
-        assert_is!(line(face, 4), ReadProblem::Syntax { .. });
+        assert_is!(line(face, 4), FileProblem::Syntax { .. });
     }
-    assert_is!(line("v 1 2", 4), ReadProblem::Syntax { .. });
-    assert_is!(line("v 1 2 \\\n", 4), ReadProblem::Syntax { .. });
-    assert_is!(line("v 1 2 three", 4), ReadProblem::Syntax { .. });
-    assert_is!(refuse("v 0 0 0\nf 1 1\n", Format::Obj).1, ReadProblem::NothingLeft(_));
-    assert_is!(refuse("v 0 0 0\nv 1 0 0\nl 1 2\n", Format::Obj).1, ReadProblem::NothingLeft(_));
+    assert_is!(line("v 1 2", 4), FileProblem::Syntax { .. });
+    assert_is!(line("v 1 2 \\\n", 4), FileProblem::Syntax { .. });
+    assert_is!(line("v 1 2 three", 4), FileProblem::Syntax { .. });
+    assert_is!(refuse("v 0 0 0\nf 1 1\n", Format::Obj).1, FileProblem::NothingLeft(_));
+    assert_is!(refuse("v 0 0 0\nv 1 0 0\nl 1 2\n", Format::Obj).1, FileProblem::NothingLeft(_));
 }
 
 #[test]
 fn off_that_lies() {
-    let at = |text: &str, line| refuse_at(text, Format::Off, Place::Line(line));
-    assert_is!(at("OFF\n4000000000 4000000000 0\n0 0 0\n", 3), ReadProblem::Truncated { .. });
-    assert_is!(at("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 6), ReadProblem::Truncated { .. });
+    let at = |text: &str, line| refuse_at(text, Format::Off, Location::Line(line));
+    assert_is!(at("OFF\n4000000000 4000000000 0\n0 0 0\n", 3), FileProblem::Truncated { .. });
+    assert_is!(at("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", 6), FileProblem::Truncated { .. });
     // A number is missing: what follows is told from numbers that go on in the next line.
-    assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", 5), ReadProblem::Syntax { .. });
-    assert_is!(at("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n2 0 1 2\n", 7), ReadProblem::Syntax { .. });
-    assert_is!(at("OFF\n3 1 0\n0 0 0 x 0 0\n1 0 0\n", 3), ReadProblem::Syntax { .. });
-    assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0 0 0 1\n", 4), ReadProblem::Truncated { .. });
-    assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", 6), ReadProblem::IndexOutOfRange { .. });
-    assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", 6), ReadProblem::IndexOutOfRange { .. });
-    assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4000000000 0 1 2\n", 6), ReadProblem::Truncated { .. });
-    assert_is!(at("OFF\n-3 1 0\n", 2), ReadProblem::Syntax { .. });
-    assert_is!(at("OFF BINARY\n", 1), ReadProblem::Unsupported(_));
-    assert_is!(at("4OFF\n1 1 1\n", 1), ReadProblem::Unsupported(_));
-    assert_is!(refuse("OFF 1 1 0\n0 0 0\n2 0 0\n", Format::Off).1, ReadProblem::NothingLeft(_));
+    assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", 5), FileProblem::Syntax { .. });
+    assert_is!(at("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n2 0 1 2\n", 7), FileProblem::Syntax { .. });
+    assert_is!(at("OFF\n3 1 0\n0 0 0 x 0 0\n1 0 0\n", 3), FileProblem::Syntax { .. });
+    assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0 0 0 1\n", 4), FileProblem::Truncated { .. });
+    assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", 6), FileProblem::IndexOutOfRange { .. });
+    assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", 6), FileProblem::IndexOutOfRange { .. });
+    assert_is!(at("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n4000000000 0 1 2\n", 6), FileProblem::Truncated { .. });
+    assert_is!(at("OFF\n-3 1 0\n", 2), FileProblem::Syntax { .. });
+    assert_is!(at("OFF BINARY\n", 1), FileProblem::Unsupported(_));
+    assert_is!(at("4OFF\n1 1 1\n", 1), FileProblem::Unsupported(_));
+    assert_is!(refuse("OFF 1 1 0\n0 0 0\n2 0 0\n", Format::Off).1, FileProblem::NothingLeft(_));
 }
 
 fn ply(format: &str, elements: &str, body: &[u8]) -> Vec<u8> {
@@ -141,7 +144,7 @@ fn ply_that_lies_in_its_header() {
     let binary = "binary_little_endian";
     for n in [5, 4_000_000_000, u64::MAX / 2] {
         for format in [binary, "binary_big_endian", "ascii"] {
-            assert_is!(refuse(ply(format, &vertex(n), b"0 0 0\n"), Format::Ply).1, ReadProblem::Truncated { .. });
+            assert_is!(refuse(ply(format, &vertex(n), b"0 0 0\n"), Format::Ply).1, FileProblem::Truncated { .. });
         }
     }
     // A row of nothing, four billion times, costs nothing.
@@ -151,7 +154,7 @@ fn ply_that_lies_in_its_header() {
     assert_eq!(read_bytes(&ply(binary, &elements, &body), None, None).unwrap().mesh.triangles, [[0, 0, 0]]);
     // A list of four billion.
     body[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
-    assert_is!(refuse(ply(binary, &elements, &body), Format::Ply).1, ReadProblem::Truncated { .. });
+    assert_is!(refuse(ply(binary, &elements, &body), Format::Ply).1, FileProblem::Truncated { .. });
 
     for (elements, line) in [
         ("property float x\n", 3),
@@ -163,35 +166,35 @@ fn ply_that_lies_in_its_header() {
         ("element vertex 1\nproperty float x\nproperty float y\n", 3),
         ("element face 1\nproperty list uchar int vertex_indices\n", 5),
     ] {
-        let problem = refuse_at(ply("ascii", elements, b"0 0 0\n"), Format::Ply, Place::Line(line));
-        assert_is!(problem, ReadProblem::Syntax { .. });
+        let problem = refuse_at(ply("ascii", elements, b"0 0 0\n"), Format::Ply, Location::Line(line));
+        assert_is!(problem, FileProblem::Syntax { .. });
     }
-    assert_is!(refuse_at(ply("utf8", "", b""), Format::Ply, Place::Line(2)), ReadProblem::Syntax { .. });
-    assert_is!(refuse("ply\nelement vertex 1\nend_header\n", Format::Ply).1, ReadProblem::Syntax { .. });
-    assert_is!(refuse_at("ply\nformat ascii 1.0\n", Format::Ply, Place::Byte(21)), ReadProblem::Truncated { .. });
+    assert_is!(refuse_at(ply("utf8", "", b""), Format::Ply, Location::Line(2)), FileProblem::Syntax { .. });
+    assert_is!(refuse("ply\nelement vertex 1\nend_header\n", Format::Ply).1, FileProblem::Syntax { .. });
+    assert_is!(refuse_at("ply\nformat ascii 1.0\n", Format::Ply, Location::Byte(21)), FileProblem::Truncated { .. });
 }
 
 #[test]
 fn ply_that_is_broken_inside() {
     let elements = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                     element face 1\nproperty list char float vertex_indices\n";
-    let line = |body: &str, line| refuse_at(ply("ascii", elements, body.as_bytes()), Format::Ply, Place::Line(line));
+    let line = |body: &str, line| refuse_at(ply("ascii", elements, body.as_bytes()), Format::Ply, Location::Line(line));
     let points = "0 0 0\n1 0 0\n0 1 0\n";
     for face in ["3 0 1 3", "3 0 1 -1", "3 0 1 0.5", "3 0 1 nan", "3 0 1 1e99"] {
-        assert_is!(line(&format!("{points}{face}\n"), 13), ReadProblem::IndexOutOfRange { .. });
+        assert_is!(line(&format!("{points}{face}\n"), 13), FileProblem::IndexOutOfRange { .. });
     }
     for face in ["3 0 1", "-3 0 1 2", "1.5 0 1 2", "nan", "3 0 1 x"] {
-        assert_is!(line(&format!("{points}{face}\n"), 13), ReadProblem::Syntax { .. });
+        assert_is!(line(&format!("{points}{face}\n"), 13), FileProblem::Syntax { .. });
     }
-    assert_is!(line(points, 12), ReadProblem::Truncated { .. });
-    assert_is!(line("0 0 0\n1 0\n0 1 0\n3 0 1 2\n", 11), ReadProblem::Syntax { .. });
+    assert_is!(line(points, 12), FileProblem::Truncated { .. });
+    assert_is!(line("0 0 0\n1 0\n0 1 0\n3 0 1 2\n", 11), FileProblem::Syntax { .. });
 
     let whole = encoded(&tetrahedron(), &WriteOptions::new(Format::Ply));
     let body = whole.len() - 4 * 12 - 4 * 13;
     let mut index = whole.clone();
     index[body + 48 + 1..][..4].copy_from_slice(&(-1i32).to_le_bytes());
-    assert_is!(refuse_at(index, Format::Ply, Place::Byte(body as u64 + 48)), ReadProblem::IndexOutOfRange { .. });
-    assert_is!(refuse(&whole[..whole.len() - 1], Format::Ply).1, ReadProblem::Truncated { .. });
+    assert_is!(refuse_at(index, Format::Ply, Location::Byte(body as u64 + 48)), FileProblem::IndexOutOfRange { .. });
+    assert_is!(refuse(&whole[..whole.len() - 1], Format::Ply).1, FileProblem::Truncated { .. });
 }
 
 /// The JSON of a triangle with some of it replaced.
@@ -240,11 +243,11 @@ fn gltf_that_lies() {
         (&[(r#""scene":0"#, r#""extensionsRequired":["KHR_draco_mesh_compression"]"#)], "extensionsRequired"),
     ];
     for (changes, place) in cases {
-        refuse_at(gltf(changes), Format::Gltf, Place::Item((*place).to_owned()));
+        refuse_at(gltf(changes), Format::Gltf, Location::Item((*place).to_owned()));
     }
     let points = gltf(&[(r#""indices":1"#, r#""indices":1,"mode":0"#)]);
-    assert_is!(refuse(points, Format::Gltf).1, ReadProblem::PointCloud { points: 3 });
-    refuse_at(r#"{"asset":{"version":"2.0"},"#, Format::Gltf, Place::Line(1));
+    assert_is!(refuse(points, Format::Gltf).1, FileProblem::PointCloud { points: 3 });
+    refuse_at(r#"{"asset":{"version":"2.0"},"#, Format::Gltf, Location::Line(1));
     refuse(format!("{{\"asset\":{}", "[".repeat(100_000)), Format::Gltf);
 }
 
@@ -252,18 +255,18 @@ fn gltf_that_lies() {
 fn glb_that_lies() {
     let whole = encoded(&tetrahedron(), &WriteOptions::new(Format::Glb));
     for length in 4..whole.len() {
-        assert_is!(refuse(&whole[..length], Format::Glb).1, ReadProblem::Truncated { .. });
+        assert_is!(refuse(&whole[..length], Format::Glb).1, FileProblem::Truncated { .. });
     }
     let with = |at: usize, word: u32| {
         let mut bytes = whole.clone();
         bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
         bytes
     };
-    assert_is!(refuse_at(with(4, 1), Format::Glb, Place::Byte(4)), ReadProblem::Unsupported(_));
-    assert_is!(refuse(with(8, u32::MAX), Format::Glb).1, ReadProblem::Truncated { .. });
-    assert_is!(refuse(with(8, 0), Format::Glb).1, ReadProblem::Syntax { .. });
-    assert_is!(refuse(with(12, u32::MAX), Format::Glb).1, ReadProblem::Truncated { .. });
-    assert_is!(refuse(with(16, 0), Format::Glb).1, ReadProblem::Syntax { .. });
+    assert_is!(refuse_at(with(4, 1), Format::Glb, Location::Byte(4)), FileProblem::Unsupported(_));
+    assert_is!(refuse(with(8, u32::MAX), Format::Glb).1, FileProblem::Truncated { .. });
+    assert_is!(refuse(with(8, 0), Format::Glb).1, FileProblem::Syntax { .. });
+    assert_is!(refuse(with(12, u32::MAX), Format::Glb).1, FileProblem::Truncated { .. });
+    assert_is!(refuse(with(16, 0), Format::Glb).1, FileProblem::Syntax { .. });
 }
 
 /// Nodes and primitives that use the same large accessor many times over.
@@ -278,7 +281,7 @@ fn gltf_that_unfolds_without_end() {
         (r#""count":3,"type":"VEC3""#, r#""count":4000,"type":"VEC3""#),
     ]);
     let (result, peak) = peak_of(|| read_bytes(json.as_bytes(), None, None));
-    assert_is!(*result.unwrap_err().problem, ReadProblem::TooLarge { .. });
+    assert_is!(*result.unwrap_err().problem, FileProblem::TooLarge { .. });
     assert!(peak < 400 << 20, "{peak}");
 }
 
@@ -305,31 +308,31 @@ fn three_mf_that_lies() {
     let problem = |changes: &[(&str, &str)]| {
         let (place, problem) = refuse(object(changes), Format::ThreeMf);
         assert!(
-            matches!(&place, Some(Place::Part { name, byte }) if name == "3D/3dmodel.model" && *byte > 0),
+            matches!(&place, Some(Location::Part { name, byte }) if name == "3D/3dmodel.model" && *byte > 0),
             "{place:?}"
         );
         problem
     };
-    assert_is!(problem(&[(r#"v3="2""#, r#"v3="3""#)]), ReadProblem::IndexOutOfRange { .. });
-    assert_is!(problem(&[(r#"v3="2""#, r#"v3="-1""#)]), ReadProblem::IndexOutOfRange { .. });
-    assert_is!(problem(&[(r#" v3="2""#, "")]), ReadProblem::Syntax { .. });
-    assert_is!(problem(&[(r#" z="0""#, "")]), ReadProblem::Syntax { .. });
+    assert_is!(problem(&[(r#"v3="2""#, r#"v3="3""#)]), FileProblem::IndexOutOfRange { .. });
+    assert_is!(problem(&[(r#"v3="2""#, r#"v3="-1""#)]), FileProblem::IndexOutOfRange { .. });
+    assert_is!(problem(&[(r#" v3="2""#, "")]), FileProblem::Syntax { .. });
+    assert_is!(problem(&[(r#" z="0""#, "")]), FileProblem::Syntax { .. });
     assert_is!(
         problem(&[("<item", r#"<item transform="1e999 0 0 0 1 0 0 0 1 0 0 0""#)]),
-        ReadProblem::NotFinite { .. }
+        FileProblem::NotFinite { .. }
     );
-    assert_is!(problem(&[(r#"z="0""#, r#"z="&zero;""#)]), ReadProblem::Syntax { .. });
-    assert_is!(problem(&[("<item", r#"<item transform="1 0 0""#)]), ReadProblem::Syntax { .. });
-    assert_is!(problem(&[("</vertices>", "</vertexes>")]), ReadProblem::Syntax { .. });
-    assert_is!(problem(&[(r#"objectid="1""#, r#"objectid="one""#)]), ReadProblem::Syntax { .. });
+    assert_is!(problem(&[(r#"z="0""#, r#"z="&zero;""#)]), FileProblem::Syntax { .. });
+    assert_is!(problem(&[("<item", r#"<item transform="1 0 0""#)]), FileProblem::Syntax { .. });
+    assert_is!(problem(&[("</vertices>", "</vertexes>")]), FileProblem::Syntax { .. });
+    assert_is!(problem(&[(r#"objectid="1""#, r#"objectid="one""#)]), FileProblem::Syntax { .. });
     assert_is!(
         refuse(object(&[(r#"objectid="1""#, r#"objectid="2""#)]), Format::ThreeMf).1,
-        ReadProblem::Syntax { .. }
+        FileProblem::Syntax { .. }
     );
-    assert_is!(refuse(three_mf(""), Format::ThreeMf).1, ReadProblem::NoTriangles);
-    assert_is!(refuse(zipped(&[("readme.txt", b"no model")]), Format::ThreeMf).1, ReadProblem::Unsupported(_));
+    assert_is!(refuse(three_mf(""), Format::ThreeMf).1, FileProblem::NoTriangles);
+    assert_is!(refuse(zipped(&[("readme.txt", b"no model")]), Format::ThreeMf).1, FileProblem::Unsupported(_));
     let cut = zipped(&[("3D/3dmodel.model", b"<model><resources><object id=\"1\">")]);
-    assert_is!(refuse(cut, Format::ThreeMf).1, ReadProblem::Truncated { .. });
+    assert_is!(refuse(cut, Format::ThreeMf).1, FileProblem::Truncated { .. });
     let whole = object(&[]);
     for length in 0..whole.len() {
         refuse(&whole[..length], Format::ThreeMf);
@@ -347,9 +350,9 @@ fn three_mf_that_unfolds_without_end() {
     };
     // Within itself, and in a circle.
     let circle = file(components(1, &[1]), 1);
-    assert_is!(refuse(circle, Format::ThreeMf).1, ReadProblem::Syntax { .. });
+    assert_is!(refuse(circle, Format::ThreeMf).1, FileProblem::Syntax { .. });
     let circle = file(components(1, &[2]) + &components(2, &[1]), 1);
-    assert_is!(refuse(circle, Format::ThreeMf).1, ReadProblem::Syntax { .. });
+    assert_is!(refuse(circle, Format::ThreeMf).1, FileProblem::Syntax { .. });
     // Deeper than anybody builds, and no circle.
     let chain: String = (2..20_000).map(|id| components(id, &[id - 1])).collect();
     let deep = file(format!(r#"<object id="1">{TRIANGLE}</object>{chain}"#), 19_999);
@@ -360,7 +363,7 @@ fn three_mf_that_unfolds_without_end() {
         let doubling: String = (2..60).map(|id| components(id, &[id - 1, id - 1])).collect();
         let bomb = file(format!(r#"<object id="1">{leaf}</object>{doubling}"#), 59);
         let (result, peak) = peak_of(|| read_bytes(&bomb, None, None));
-        assert_is!(*result.unwrap_err().problem, ReadProblem::TooLarge { .. });
+        assert_is!(*result.unwrap_err().problem, FileProblem::TooLarge { .. });
         assert!(peak < 400 << 20, "{peak}");
     }
 }
@@ -374,7 +377,7 @@ fn a_zip_bomb_is_not_unpacked() {
     drop(model);
     assert!(bomb.len() < 2 << 20, "{}", bomb.len());
     let (result, peak) = peak_of(|| read_bytes(&bomb, None, None));
-    assert_is!(*result.unwrap_err().problem, ReadProblem::TooLarge { what: "unpacked bytes", .. });
+    assert_is!(*result.unwrap_err().problem, FileProblem::TooLarge { what: "unpacked bytes", .. });
     assert!(peak < 256 << 20, "{peak}");
 }
 
@@ -393,9 +396,9 @@ fn gltf_of_empty_things_stays_small() {
         format!(r#"{{"asset":{{"version":"2.0"}},"{key}":[{}]}}"#, vec![thing; 100_000].join(","))
     };
     for key in ["nodes", "accessors", "meshes", "materials", "scenes"] {
-        assert_is!(refuse(document(key, "{}"), Format::Gltf).1, ReadProblem::TooLarge { .. });
+        assert_is!(refuse(document(key, "{}"), Format::Gltf).1, FileProblem::TooLarge { .. });
     }
-    assert_is!(refuse(document("nodes", r#"{"name":"a"}"#), Format::Gltf).1, ReadProblem::NoTriangles);
+    assert_is!(refuse(document("nodes", r#"{"name":"a"}"#), Format::Gltf).1, FileProblem::NoTriangles);
 }
 
 #[test]

@@ -4,11 +4,13 @@
 mod colours;
 mod formats;
 mod found;
+mod front;
 mod grid_forms;
 mod grid_lies;
 mod grid_vdb;
 mod grids;
 mod hostile;
+mod lying_documents;
 mod memory;
 mod mutants;
 mod roles;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use meshwright::io::{Format, Unit, WriteOptions, WriteProblem, encode, read_bytes};
-use meshwright::mesh::TriMesh;
+use meshwright::mesh::{IndexError, TriMesh};
 use proptest::prelude::*;
 
 use super::support::{assert_sound, corners, encoded, every_form, tetrahedron};
@@ -133,7 +133,10 @@ fn what_no_format_holds_is_refused_before_a_byte() {
         assert!(matches!(refuse(&TriMesh::default(), &options), WriteProblem::NoTriangles));
         let mut mesh = tetrahedron();
         mesh.triangles[2] = [0, 1, 4];
-        assert!(matches!(refuse(&mesh, &options), WriteProblem::BadIndex { triangle: 2 }));
+        assert!(matches!(
+            refuse(&mesh, &options),
+            WriteProblem::Index(IndexError { triangle: 2, index: 4, vertices: 4 })
+        ));
         let mut mesh = tetrahedron();
         mesh.positions[1].y = f64::NAN;
         assert!(matches!(refuse(&mesh, &options), WriteProblem::Coordinate { vertex: 1, .. }));

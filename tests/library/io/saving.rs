@@ -3,7 +3,7 @@
 use std::fs;
 use std::io;
 
-use meshwright::io::{Format, WriteOptions, WriteProblem, read, save_bytes, write};
+use meshwright::io::{WriteProblem, read, save_bytes, write, write_with};
 use meshwright::mesh::TriMesh;
 
 use super::support::{every_form, tetrahedron};
@@ -17,7 +17,7 @@ fn every_form_is_saved_and_read() {
     let folder = tempfile::tempdir().unwrap();
     for options in every_form() {
         let path = folder.path().join(format!("mesh.{}", options.format));
-        write(&path, &tetrahedron(), &options).unwrap();
+        write_with(&path, &tetrahedron(), &options).unwrap();
         let loaded = read(&path).unwrap();
         assert_eq!((loaded.format, loaded.mesh.triangles.len()), (options.format, 4));
     }
@@ -29,7 +29,7 @@ fn a_failure_leaves_the_old_file_and_nothing_else() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mesh.obj");
     fs::write(&path, "old").unwrap();
-    let error = write(&path, &TriMesh::default(), &WriteOptions::new(Format::Obj)).unwrap_err();
+    let error = write(&path, &TriMesh::default()).unwrap_err();
     assert!(matches!(error.problem, WriteProblem::NoTriangles));
     assert_eq!(error.path.as_deref(), Some(path.as_path()));
     let error = save_bytes(&path, |out| {
@@ -45,7 +45,7 @@ fn a_failure_leaves_the_old_file_and_nothing_else() {
 fn a_missing_folder_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("absent/mesh.stl");
-    let error = write(&path, &tetrahedron(), &WriteOptions::new(Format::Stl)).unwrap_err();
+    let error = write(&path, &tetrahedron()).unwrap_err();
     assert!(error.to_string().contains("absent"), "{error}");
     assert!(matches!(error.problem, WriteProblem::Io(_)));
 }
@@ -71,6 +71,6 @@ fn links_devices_and_permissions_are_respected() {
     let mode = |path| fs::metadata(path).unwrap().permissions().mode();
     assert_eq!(mode(&ours), mode(&theirs));
 
-    save_bytes("/dev/null".as_ref(), |out| out.write_all(b"away")).unwrap();
+    save_bytes("/dev/null", |out| out.write_all(b"away")).unwrap();
     assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
 }

@@ -5,4 +5,5 @@ mod closest;
 mod half_edges;
 mod intersections;
 mod shapes;
+mod soup;
 mod validity;

@@ -4,9 +4,9 @@ mod lids;
 
 use crate::common::{shapes, stages};
 use glam::{DMat3, DVec3, IVec3};
-use meshwright::lattice::{BRICK, Grid, Lattice, brick_of};
+use meshwright::lattice::{BRICK, Grid, Lattice, brick_of, voxel_in_brick};
 use meshwright::mesh::TriMesh;
-use meshwright::vote::{VoteRule, Votes, doubts, voxel_in_brick};
+use meshwright::vote::{VoteRule, Votes, doubts};
 use proptest::prelude::*;
 
 fn all_voxels(lattice: &Lattice) -> impl Iterator<Item = IVec3> {

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::super::error::{GridReadError, GridReadProblem, shown};
 use super::super::numbers::{Cap, Kind, count};
 use super::super::{GridFile, GridFormat, GridValues, all_finite};
-use crate::io::soup::counted;
+use crate::io::error::{FileError, FileProblem};
+use crate::io::text::{counted, quoted};
 
 /// What the header says.
 struct Header {
@@ -17,7 +17,7 @@ struct Header {
     data: usize,
 }
 
-pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, GridReadError> {
+pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, FileError> {
     let header = header(bytes)?;
     let dims = header.dims;
     let width = header.kind.width();
@@ -25,7 +25,7 @@ pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, Gri
     let wanted = count(dims).and_then(|count| count.checked_mul(width)).filter(|&wanted| wanted <= there);
     let Some(wanted) = wanted else {
         let expected = format!("{} x {} x {} numbers of {width} bytes", dims[0], dims[1], dims[2]);
-        return Err(GridReadProblem::truncated(expected, format!("{there} bytes are there")).at_byte(bytes.len()));
+        return Err(FileProblem::truncated(expected, format!("{there} bytes are there")).at_byte(bytes.len()));
     };
     let mut warnings = Vec::new();
     if there > wanted {
@@ -60,8 +60,8 @@ fn turned(values: &[f32], [width, height, depth]: [usize; 3]) -> Vec<f32> {
     out
 }
 
-fn header(bytes: &[u8]) -> Result<Header, GridReadError> {
-    let short = || GridReadProblem::truncated("a NumPy header", "the file ends in it").at_byte(bytes.len());
+fn header(bytes: &[u8]) -> Result<Header, FileError> {
+    let short = || FileProblem::truncated("a NumPy header", "the file ends in it").at_byte(bytes.len());
     let version = *bytes.get(6).ok_or_else(short)?;
     let (start, length) = match version {
         1 => (10, bytes.get(8..10).map(|b| usize::from(u16::from_le_bytes([b[0], b[1]])))),
@@ -69,7 +69,7 @@ fn header(bytes: &[u8]) -> Result<Header, GridReadError> {
         _ => {
             let text =
                 format!("version {version} of the format is not read here, 1 to 3 are: save it with NumPy again");
-            return Err(GridReadProblem::unsupported(text).at_byte(6));
+            return Err(FileProblem::unsupported(text).at_byte(6));
         }
     };
     let data = length.and_then(|length| length.checked_add(start)).filter(|&end| end <= bytes.len());
@@ -79,7 +79,7 @@ fn header(bytes: &[u8]) -> Result<Header, GridReadError> {
         let after =
             [format!("'{key}'"), format!("\"{key}\"")].into_iter().find_map(|key| text.split_once(key.as_str()));
         let value = after.and_then(|(_, rest)| rest.trim_start().strip_prefix(':')).map(str::trim_start);
-        value.ok_or_else(|| GridReadProblem::syntax(expected, shown(text.as_bytes())).at_byte(start))
+        value.ok_or_else(|| FileProblem::syntax(expected, quoted(text.as_bytes())).at_byte(start))
     };
     let (kind, big) = kind(field("descr", "`descr`, the type of the numbers,")?).map_err(|e| e.at_byte(start))?;
     let order = field("fortran_order", "`fortran_order`")?;
@@ -87,7 +87,7 @@ fn header(bytes: &[u8]) -> Result<Header, GridReadError> {
         (true, _) => true,
         (_, true) => false,
         _ => {
-            let problem = GridReadProblem::syntax("True or False as `fortran_order`", shown(order.as_bytes()));
+            let problem = FileProblem::syntax("True or False as `fortran_order`", quoted(order.as_bytes()));
             return Err(problem.at_byte(start));
         }
     };
@@ -96,7 +96,7 @@ fn header(bytes: &[u8]) -> Result<Header, GridReadError> {
 }
 
 /// `'<f4'` and the like.
-fn kind(text: &str) -> Result<(Kind, bool), GridReadProblem> {
+fn kind(text: &str) -> Result<(Kind, bool), FileProblem> {
     let quote = text.chars().next().filter(|c| matches!(c, '\'' | '"'));
     let name = quote.and_then(|quote| text[1..].split(quote).next()).unwrap_or("");
     let (big, code) = match name.as_bytes().first() {
@@ -118,16 +118,16 @@ fn kind(text: &str) -> Result<(Kind, bool), GridReadProblem> {
         "u8" => Kind::U64,
         _ => {
             let text =
-                format!("numbers of type {} are not read here: convert the array to float32", shown(text.as_bytes()));
-            return Err(GridReadProblem::Unsupported(text));
+                format!("numbers of type {} are not read here: convert the array to float32", quoted(text.as_bytes()));
+            return Err(FileProblem::Unsupported(text));
         }
     };
     Ok((kind, big))
 }
 
 /// `(10, 20, 30)`.
-fn shape(text: &str) -> Result<[usize; 3], GridReadProblem> {
-    let wrong = || GridReadProblem::syntax("a shape of three sizes above zero, x, y and z,", shown(text.as_bytes()));
+fn shape(text: &str) -> Result<[usize; 3], FileProblem> {
+    let wrong = || FileProblem::syntax("a shape of three sizes above zero, x, y and z,", quoted(text.as_bytes()));
     let inner = text.strip_prefix('(').and_then(|rest| rest.split(')').next()).ok_or_else(wrong)?;
     let sizes = inner.split(',').map(str::trim).filter(|size| !size.is_empty());
     let sizes: Vec<usize> = sizes.map(str::parse).collect::<Result<_, _>>().map_err(|_| wrong())?;

@@ -1,6 +1,7 @@
 //! The header: lines of `field: value` and `key:=value`.
 
-use super::super::error::{GridReadError, GridReadProblem, shown};
+use crate::io::error::{FileError, FileProblem};
+use crate::io::text::quoted;
 
 /// The lines of a header, and where the numbers begin.
 pub(super) struct Header {
@@ -21,7 +22,7 @@ pub(super) struct Field<'a> {
 }
 
 impl Header {
-    pub(super) fn new(bytes: &[u8]) -> Result<Self, GridReadError> {
+    pub(super) fn new(bytes: &[u8]) -> Result<Self, FileError> {
         let mut header = Self { fields: Vec::new(), keys: Vec::new(), data: bytes.len(), lines: 0 };
         let mut at = 0;
         while at < bytes.len() {
@@ -41,14 +42,14 @@ impl Header {
         Ok(header)
     }
 
-    fn add(&mut self, line: &[u8]) -> Result<(), GridReadError> {
+    fn add(&mut self, line: &[u8]) -> Result<(), FileError> {
         let text = String::from_utf8_lossy(line);
         if let Some((key, value)) = text.split_once(":=") {
             self.keys.push((key.trim().to_owned(), value.trim().to_owned()));
             return Ok(());
         }
         let (name, value) = text.split_once(':').ok_or_else(|| {
-            GridReadProblem::syntax("`field: value`, `key:=value` or a blank line", shown(line)).at_line(self.lines)
+            FileProblem::syntax("`field: value`, `key:=value` or a blank line", quoted(line)).at_line(self.lines)
         })?;
         self.fields.push((name.trim().to_ascii_lowercase(), value.trim().to_owned(), self.lines));
         Ok(())
@@ -61,8 +62,8 @@ impl Header {
     }
 
     /// The same, where it must be there.
-    pub(super) fn needed(&self, names: &[&str]) -> Result<Field<'_>, GridReadError> {
-        let none = || GridReadProblem::syntax(format!("the field `{}`", names[0]), "none").at_item("header");
+    pub(super) fn needed(&self, names: &[&str]) -> Result<Field<'_>, FileError> {
+        let none = || FileProblem::syntax(format!("the field `{}`", names[0]), "none").at_item("header");
         self.field(names).ok_or_else(none)
     }
 
@@ -73,18 +74,18 @@ impl Header {
 }
 
 impl Field<'_> {
-    pub(super) fn wrong(self, expected: &str) -> GridReadError {
-        GridReadProblem::syntax(expected, shown(self.text.as_bytes())).at_line(self.line)
+    pub(super) fn wrong(self, expected: &str) -> FileError {
+        FileProblem::syntax(expected, quoted(self.text.as_bytes())).at_line(self.line)
     }
 
     /// Three numbers apart by blanks.
-    pub(super) fn three(self) -> Result<[f64; 3], GridReadError> {
+    pub(super) fn three(self) -> Result<[f64; 3], FileError> {
         let numbers: Option<Vec<f64>> = self.text.split_whitespace().map(|word| word.parse().ok()).collect();
         numbers.and_then(|n| n.try_into().ok()).ok_or_else(|| self.wrong("three numbers"))
     }
 
     /// Vectors such as `(1,0,0) (0,1,0)`.
-    pub(super) fn vectors<const N: usize>(self) -> Result<[[f64; 3]; N], GridReadError> {
+    pub(super) fn vectors<const N: usize>(self) -> Result<[[f64; 3]; N], FileError> {
         let wrong = || self.wrong(if N == 1 { "a vector (x,y,z)" } else { "three vectors (x,y,z)" });
         let mut vectors = Vec::new();
         for part in self.text.split(')').map(str::trim).filter(|part| !part.is_empty()) {

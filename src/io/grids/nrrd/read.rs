@@ -3,18 +3,19 @@
 use flate2::read::MultiGzDecoder;
 use glam::DVec3;
 
-use super::super::error::{GridReadError, GridReadProblem, shown};
 use super::super::numbers::{self, Cap, Kind};
 use super::super::{GridFile, GridFormat, GridValues, all_finite, one_spacing, spacing_of_axes};
 use super::header::{Field, Header};
 use crate::io::Unit;
+use crate::io::error::{FileError, FileProblem};
+use crate::io::text::quoted;
 
-pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, GridReadError> {
+pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, FileError> {
     let header = Header::new(bytes)?;
     if let Some(field) = header.field(&["data file", "datafile"]) {
         let text =
             "its numbers are in another file, which is not read here: save it as one file (.nrrd, attached header)";
-        return Err(GridReadProblem::unsupported(text).at_line(field.line));
+        return Err(FileProblem::unsupported(text).at_line(field.line));
     }
     let dims = dims(&header)?;
     let mut values = values(bytes, &header, dims, cap)?;
@@ -40,11 +41,11 @@ pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, Gri
     })
 }
 
-fn dims(header: &Header) -> Result<[usize; 3], GridReadError> {
+fn dims(header: &Header) -> Result<[usize; 3], FileError> {
     let dimension = header.needed(&["dimension"])?;
     if dimension.text != "3" {
-        let text = format!("it has {} axes; a lattice of numbers has three", shown(dimension.text.as_bytes()));
-        return Err(GridReadProblem::Unsupported(text).at_line(dimension.line));
+        let text = format!("it has {} axes; a lattice of numbers has three", quoted(dimension.text.as_bytes()));
+        return Err(FileProblem::Unsupported(text).at_line(dimension.line));
     }
     let sizes = header.needed(&["sizes"])?;
     let found: Option<Vec<usize>> = sizes.text.split_whitespace().map(|size| size.parse().ok()).collect();
@@ -52,12 +53,11 @@ fn dims(header: &Header) -> Result<[usize; 3], GridReadError> {
     dims.filter(|dims| !dims.contains(&0)).ok_or_else(|| sizes.wrong("three sizes above zero"))
 }
 
-fn values(bytes: &[u8], header: &Header, dims: [usize; 3], cap: Cap) -> Result<Vec<f32>, GridReadError> {
+fn values(bytes: &[u8], header: &Header, dims: [usize; 3], cap: Cap) -> Result<Vec<f32>, FileError> {
     let kind = kind(header.needed(&["type"])?)?;
-    let end = |problem: GridReadProblem| problem.at_byte(bytes.len());
+    let end = |problem: FileProblem| problem.at_byte(bytes.len());
     let length = numbers::count(dims).and_then(|count| count.checked_mul(kind.width()));
-    let length =
-        length.ok_or_else(|| end(GridReadProblem::truncated(format!("{dims:?} numbers"), "there are fewer")))?;
+    let length = length.ok_or_else(|| end(FileProblem::truncated(format!("{dims:?} numbers"), "there are fewer")))?;
     let data = after_lines(&bytes[header.data..], skip(header, &["line skip", "lineskip"])?);
     let skipped = skip(header, &["byte skip", "byteskip"])?;
     let encoding = header.needed(&["encoding"])?;
@@ -66,7 +66,7 @@ fn values(bytes: &[u8], header: &Header, dims: [usize; 3], cap: Cap) -> Result<V
         "raw" => {
             let raw = raw(data, skipped, length).ok_or_else(|| {
                 let expected = format!("{length} bytes of numbers");
-                end(GridReadProblem::truncated(expected, format!("{} bytes are there", data.len())))
+                end(FileProblem::truncated(expected, format!("{} bytes are there", data.len())))
             })?;
             let big = big(header, kind)?;
             cap.check_values(count, 0).map_err(|e| e.at_byte(header.data))?;
@@ -86,20 +86,20 @@ fn values(bytes: &[u8], header: &Header, dims: [usize; 3], cap: Cap) -> Result<V
             values.map_err(|e| e.at_byte(header.data))
         }
         other => {
-            let text = format!("the encoding {} is not read here: save it raw or as gzip", shown(other.as_bytes()));
-            Err(GridReadProblem::Unsupported(text).at_line(encoding.line))
+            let text = format!("the encoding {} is not read here: save it raw or as gzip", quoted(other.as_bytes()));
+            Err(FileProblem::Unsupported(text).at_line(encoding.line))
         }
     }
 }
 
 /// Whether the highest byte comes first.
-fn big(header: &Header, kind: Kind) -> Result<bool, GridReadError> {
+fn big(header: &Header, kind: Kind) -> Result<bool, FileError> {
     match header.field(&["endian"]) {
         Some(Field { text: "big", .. }) => Ok(true),
         Some(Field { text: "little", .. }) => Ok(false),
         None if kind.width() == 1 => Ok(false),
         Some(field) => Err(field.wrong("`little` or `big`")),
-        None => Err(GridReadProblem::syntax("the field `endian`", "none").at_item("header")),
+        None => Err(FileProblem::syntax("the field `endian`", "none").at_item("header")),
     }
 }
 
@@ -112,7 +112,7 @@ fn raw(data: &[u8], skipped: i64, length: usize) -> Option<&[u8]> {
     data.get(start..start.checked_add(length)?)
 }
 
-fn skip(header: &Header, names: &[&str]) -> Result<i64, GridReadError> {
+fn skip(header: &Header, names: &[&str]) -> Result<i64, FileError> {
     let Some(field) = header.field(names) else { return Ok(0) };
     let least = if names[0].starts_with("byte") { -1 } else { 0 };
     field.text.parse().ok().filter(|&skip: &i64| skip >= least).ok_or_else(|| field.wrong("how many to skip"))
@@ -126,7 +126,7 @@ fn after_lines(mut data: &[u8], lines: i64) -> &[u8] {
     data
 }
 
-fn kind(field: Field<'_>) -> Result<Kind, GridReadError> {
+fn kind(field: Field<'_>) -> Result<Kind, FileError> {
     Ok(match field.text.to_ascii_lowercase().as_str() {
         "signed char" | "int8" | "int8_t" => Kind::I8,
         "uchar" | "unsigned char" | "uint8" | "uint8_t" => Kind::U8,
@@ -149,8 +149,8 @@ fn kind(field: Field<'_>) -> Result<Kind, GridReadError> {
 }
 
 /// Position of the first voxel, and spacing.
-fn place(header: &Header, warnings: &mut Vec<String>) -> Result<(DVec3, f64), GridReadError> {
-    let at_line = |field: Field<'_>| move |problem: GridReadProblem| problem.at_line(field.line);
+fn place(header: &Header, warnings: &mut Vec<String>) -> Result<(DVec3, f64), FileError> {
+    let at_line = |field: Field<'_>| move |problem: FileProblem| problem.at_line(field.line);
     let mut origin = DVec3::ZERO;
     let spacing = if let Some(field) = header.field(&["space directions"]) {
         spacing_of_axes(field.vectors()?).map_err(at_line(field))?
@@ -172,7 +172,7 @@ fn place(header: &Header, warnings: &mut Vec<String>) -> Result<(DVec3, f64), Gr
     Ok((origin, spacing))
 }
 
-fn finite(origin: DVec3, field: Field<'_>) -> Result<(), GridReadError> {
+fn finite(origin: DVec3, field: Field<'_>) -> Result<(), FileError> {
     if origin.is_finite() { Ok(()) } else { Err(field.wrong("finite numbers")) }
 }
 
@@ -183,7 +183,7 @@ fn unit(header: &Header, warnings: &mut Vec<String>) -> Option<Unit> {
     let first = words.next()?;
     let unit = first.parse().ok().filter(|_| words.all(|word| word == first));
     if unit.is_none() {
-        warnings.push(format!("the units {} are not one unit of length known here", shown(field.text.as_bytes())));
+        warnings.push(format!("the units {} are not one unit of length known here", quoted(field.text.as_bytes())));
     }
     unit
 }

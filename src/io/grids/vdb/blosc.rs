@@ -1,6 +1,6 @@
 //! Unpacking Blosc 1 with LZ4 inside, which most programs write.
 
-use super::super::error::GridReadProblem;
+use crate::io::error::FileProblem;
 
 /// Bytes before the table of blocks.
 const HEADER: usize = 16;
@@ -16,22 +16,22 @@ const MOST_SPLITS: usize = 16;
 const LEAST_PIECE: usize = 128;
 
 /// The `size` bytes that `packed` holds.
-pub(super) fn unpack(packed: &[u8], size: usize) -> Result<Vec<u8>, GridReadProblem> {
+pub(super) fn unpack(packed: &[u8], size: usize) -> Result<Vec<u8>, FileProblem> {
     let header: &[u8; HEADER] = packed.first_chunk().ok_or_else(cut)?;
     let (flags, width) = (header[2], usize::from(header[3]).max(1));
     let [bytes, block] = [4, 8].map(|at| word(packed, at).unwrap_or(0));
     if bytes != size {
-        return Err(GridReadProblem::syntax(format!("{size} bytes packed by Blosc"), bytes.to_string()));
+        return Err(FileProblem::syntax(format!("{size} bytes packed by Blosc"), bytes.to_string()));
     }
     if flags & COPIED != 0 {
         return packed.get(HEADER..HEADER + size).map(<[u8]>::to_vec).ok_or_else(cut);
     }
     if flags >> 5 != LZ4 || flags & BITS_SHUFFLED != 0 {
         let text = "of Blosc only LZ4 with shuffled bytes is read here: save it with zip compression, or without";
-        return Err(GridReadProblem::unsupported(text));
+        return Err(FileProblem::unsupported(text));
     }
     if block == 0 {
-        return Err(GridReadProblem::syntax("blocks packed by Blosc", "blocks of 0 bytes"));
+        return Err(FileProblem::syntax("blocks packed by Blosc", "blocks of 0 bytes"));
     }
     let mut out = Vec::with_capacity(size);
     for n in 0..size.div_ceil(block) {
@@ -48,7 +48,7 @@ pub(super) fn unpack(packed: &[u8], size: usize) -> Result<Vec<u8>, GridReadProb
     Ok(out)
 }
 
-fn unpack_block(packed: &[u8], mut at: usize, length: usize, pieces: usize) -> Result<Vec<u8>, GridReadProblem> {
+fn unpack_block(packed: &[u8], mut at: usize, length: usize, pieces: usize) -> Result<Vec<u8>, FileProblem> {
     let mut out = vec![0; length];
     for piece in out.chunks_exact_mut(length / pieces) {
         let size = word(packed, at).ok_or_else(cut)?;
@@ -59,7 +59,7 @@ fn unpack_block(packed: &[u8], mut at: usize, length: usize, pieces: usize) -> R
             continue;
         }
         let written = lz4_flex::block::decompress_into(data, piece);
-        if written.map_err(|error| GridReadProblem::syntax("bytes packed by LZ4", error.to_string()))? != piece.len() {
+        if written.map_err(|error| FileProblem::syntax("bytes packed by LZ4", error.to_string()))? != piece.len() {
             return Err(cut());
         }
     }
@@ -79,6 +79,6 @@ fn word(bytes: &[u8], at: usize) -> Option<usize> {
     Some(u32::from_le_bytes([four[0], four[1], four[2], four[3]]) as usize)
 }
 
-fn cut() -> GridReadProblem {
-    GridReadProblem::truncated("values packed by Blosc", "they end early")
+fn cut() -> FileProblem {
+    FileProblem::truncated("values packed by Blosc", "they end early")
 }

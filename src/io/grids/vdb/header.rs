@@ -1,9 +1,11 @@
 //! The archive's header, the grids in it and their metadata.
 
-use super::super::error::{GridReadError, GridReadProblem, shown};
+use super::super::format::VDB_MAGIC as MAGIC;
 use super::super::numbers::Kind;
 use super::cursor::Cursor;
-use super::{HALF, MAGIC, TREES};
+use super::{HALF, TREES};
+use crate::io::error::{FileError, FileProblem};
+use crate::io::text::quoted;
 
 /// The versions whose layout is known here.
 const VERSIONS: std::ops::RangeInclusive<u32> = 222..=224;
@@ -57,7 +59,7 @@ struct Descriptor {
 }
 
 /// The grid to read, and the names of the others.
-pub(super) fn grid(bytes: &[u8]) -> Result<(Grid<'_>, Vec<String>), GridReadError> {
+pub(super) fn grid(bytes: &[u8]) -> Result<(Grid<'_>, Vec<String>), FileError> {
     let mut cursor = Cursor::new(bytes);
     let (count, places) = archive(&mut cursor)?;
     let (mut found, mut others): (Option<Grid<'_>>, Vec<String>) = (None, Vec::new());
@@ -95,20 +97,20 @@ pub(super) fn grid(bytes: &[u8]) -> Result<(Grid<'_>, Vec<String>), GridReadErro
             "it has no grid of floats: {}",
             if others.is_empty() { "none at all".into() } else { others.join(", ") }
         );
-        GridReadProblem::Unsupported(text).at_item("grids")
+        FileProblem::Unsupported(text).at_item("grids")
     };
     Ok((found.ok_or_else(none)?, others))
 }
 
 /// Reads up to the first descriptor: the number of grids, and whether descriptors say where they are.
-fn archive(cursor: &mut Cursor<'_>) -> Result<(u32, bool), GridReadError> {
+fn archive(cursor: &mut Cursor<'_>) -> Result<(u32, bool), FileError> {
     cursor.take(MAGIC.len(), "the beginning of an OpenVDB file")?;
     let version = cursor.u32("the version")?;
     if !VERSIONS.contains(&version) {
         let (first, last) = (VERSIONS.start(), VERSIONS.end());
         let text =
             format!("version {version} of the format is not read here, {first} to {last} are: save it with OpenVDB 10");
-        return Err(GridReadProblem::Unsupported(text).at_byte(MAGIC.len()));
+        return Err(FileProblem::Unsupported(text).at_byte(MAGIC.len()));
     }
     cursor.take(8, "the version of the library")?;
     let places = cursor.u8("whether the file has places")? != 0;
@@ -117,7 +119,7 @@ fn archive(cursor: &mut Cursor<'_>) -> Result<(u32, bool), GridReadError> {
     Ok((cursor.u32("the number of grids")?, places))
 }
 
-fn descriptor(cursor: &mut Cursor<'_>) -> Result<Descriptor, GridReadError> {
+fn descriptor(cursor: &mut Cursor<'_>) -> Result<Descriptor, FileError> {
     let name = cursor.text("the name of a grid")?;
     let tree = cursor.text("the type of a grid")?;
     let parent = cursor.text("the name of a grid's parent")?;
@@ -129,8 +131,8 @@ fn described<'a>(
     descriptor: &Descriptor,
     mut cursor: Cursor<'a>,
     buffers: Option<Cursor<'a>>,
-) -> Result<Grid<'a>, GridReadError> {
-    let wrong = || cursor.wrong("a tree of floats of nodes 5, 4 and 3", shown(descriptor.tree.as_bytes()));
+) -> Result<Grid<'a>, FileError> {
+    let wrong = || cursor.wrong("a tree of floats of nodes 5, 4 and 3", quoted(descriptor.tree.as_bytes()));
     let (number, stored) = kinds(&descriptor.tree).ok_or_else(wrong)?;
     let compression = cursor.u32("the flags of compression")?;
     let metadata = metadata(&mut cursor)?;
@@ -138,7 +140,7 @@ fn described<'a>(
     Ok(Grid { name, number, stored, compression, metadata, rest: cursor, buffers })
 }
 
-fn metadata<'a>(cursor: &mut Cursor<'a>) -> Result<Metadata<'a>, GridReadError> {
+fn metadata<'a>(cursor: &mut Cursor<'a>) -> Result<Metadata<'a>, FileError> {
     const WHAT: &str = "metadata";
     let count = cursor.u32(WHAT)?;
     let mut pairs = Vec::new();

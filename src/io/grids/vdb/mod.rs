@@ -19,9 +19,6 @@ use glam::IVec3;
 pub(super) use read::read;
 pub(super) use write::write;
 
-/// The first bytes of every file.
-pub(super) const MAGIC: [u8; 8] = *b" BDV\0\0\0\0";
-
 /// Voxels along a side of the nodes below the root, the largest first.
 const SIDES: [i32; 3] = [4096, 128, 8];
 

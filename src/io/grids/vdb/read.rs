@@ -2,14 +2,15 @@
 
 use glam::IVec3;
 
-use super::super::error::{GridReadError, GridReadProblem, shown};
 use super::super::numbers::Cap;
 use super::super::{GridFile, GridFormat, GridValues, SparseValues};
 use super::header::{self, Grid, is_level_set};
 use super::values::Format;
 use super::{LATTICE_DIMS, transform, tree};
+use crate::io::error::{FileError, FileProblem};
+use crate::io::text::quoted;
 
-pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, GridReadError> {
+pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, FileError> {
     let (mut grid, others) = header::grid(bytes)?;
     let mut cursor = grid.rest.clone();
     let (origin, spacing) = transform::read(&mut cursor)?;
@@ -28,7 +29,7 @@ pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, Gri
     let (origin, dims) = match ours {
         Some(dims) => (origin, dims),
         None => {
-            let empty = || GridReadProblem::syntax("at least one value", "only a background").at_item("grid");
+            let empty = || FileProblem::syntax("at least one value", "only a background").at_item("grid");
             let [low, high] = values.bounds().ok_or_else(empty)?;
             values.rebase(low);
             (origin + low.as_dvec3() * spacing, high - low)
@@ -49,14 +50,14 @@ pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, Gri
 fn warnings(grid: &Grid<'_>, others: &[String]) -> Vec<String> {
     let mut warnings = Vec::new();
     if !others.is_empty() {
-        let others: Vec<String> = others.iter().take(8).map(|name| shown(name.as_bytes())).collect();
-        let name = shown(grid.name.as_bytes());
+        let others: Vec<String> = others.iter().take(8).map(|name| quoted(name.as_bytes())).collect();
+        let name = quoted(grid.name.as_bytes());
         warnings.push(format!("the grid {name} was read; others were left out: {}", others.join(", ")));
     }
     match grid.metadata.text("class").as_deref() {
         Some("level set") => {}
         Some(other) => warnings
-            .push(format!("the grid is no level set but a {}: are its values distances?", shown(other.as_bytes()))),
+            .push(format!("the grid is no level set but a {}: are its values distances?", quoted(other.as_bytes()))),
         None => warnings.push("the grid does not say that it is a level set: are its values distances?".to_owned()),
     }
     warnings

@@ -2,16 +2,17 @@
 
 use glam::DVec3;
 
-use super::super::error::{GridReadError, GridReadProblem, shown};
 use super::super::{one_spacing, spacing_of_axes};
 use super::cursor::Cursor;
+use crate::io::error::{FileError, FileProblem};
+use crate::io::text::quoted;
 
 const WHAT: &str = "the transform";
 /// A map of uniform scale and a translation.
 pub(super) const SCALE_TRANSLATE: &str = "UniformScaleTranslateMap";
 
 /// Position of index (0, 0, 0), and spacing.
-pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<(DVec3, f64), GridReadError> {
+pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<(DVec3, f64), FileError> {
     let start = cursor.at();
     let name = cursor.text(WHAT)?;
     let (origin, spacing) = match name.as_str() {
@@ -22,9 +23,9 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<(DVec3, f64), GridReadErro
         other => {
             let text = format!(
                 "the transform {} is not read here: resample the grid to a scale and a translation",
-                shown(other.as_bytes())
+                quoted(other.as_bytes())
             );
-            return Err(GridReadProblem::Unsupported(text).at_byte(start));
+            return Err(FileProblem::Unsupported(text).at_byte(start));
         }
     };
     let spacing = spacing.map_err(|problem| problem.at_byte(start))?;
@@ -34,10 +35,10 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<(DVec3, f64), GridReadErro
     }
 }
 
-type Spacing = Result<f64, GridReadProblem>;
+type Spacing = Result<f64, FileProblem>;
 
 /// The scale, and four vectors that follow from it.
-fn scale(cursor: &mut Cursor<'_>) -> Result<Spacing, GridReadError> {
+fn scale(cursor: &mut Cursor<'_>) -> Result<Spacing, FileError> {
     let scale = cursor.vector(WHAT)?;
     for _ in 0..4 {
         cursor.vector(WHAT)?;
@@ -46,8 +47,8 @@ fn scale(cursor: &mut Cursor<'_>) -> Result<Spacing, GridReadError> {
 }
 
 /// Four rows: where the axes lead, and the translation.
-fn affine(cursor: &mut Cursor<'_>) -> Result<(DVec3, Spacing), GridReadError> {
-    let mut row = || -> Result<DVec3, GridReadError> {
+fn affine(cursor: &mut Cursor<'_>) -> Result<(DVec3, Spacing), FileError> {
+    let mut row = || -> Result<DVec3, FileError> {
         let row = cursor.vector(WHAT)?;
         cursor.f64(WHAT)?;
         Ok(row)

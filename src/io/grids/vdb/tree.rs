@@ -2,12 +2,12 @@
 
 use glam::IVec3;
 
-use super::super::error::{GridReadError, GridReadProblem};
 use super::super::numbers::Cap;
-use super::super::{BLOCK_VOXELS, Block, BlockValues, SparseValues, Tile};
+use super::super::{BLOCK_VOXELS, BlockValues, GridBlock, GridTile, SparseValues};
 use super::cursor::{Cursor, Mask};
 use super::values::Format;
 use super::{SIDES, in_block, place};
+use crate::io::error::{FileError, FileProblem};
 
 /// Indices go this far from 0, so that nothing that is made of them overflows.
 const FARTHEST: i32 = 1 << 29;
@@ -18,7 +18,7 @@ pub(super) fn read(
     buffers: Option<Cursor<'_>>,
     mut format: Format,
     cap: Cap,
-) -> Result<SparseValues, GridReadError> {
+) -> Result<SparseValues, FileError> {
     let count = cursor.u32("the number of buffers")?;
     if count != 1 {
         return Err(cursor.wrong("one buffer for each block", count.to_string()));
@@ -40,19 +40,19 @@ struct Tree {
     cap: Cap,
     /// The corners of the leaves, in their order.
     leaves: Vec<IVec3>,
-    tiles: Vec<Tile>,
+    tiles: Vec<GridTile>,
 }
 
 impl Tree {
     /// Refuses more leaves and tiles than there may be.
-    fn check_room(&self, cursor: &Cursor<'_>) -> Result<(), GridReadError> {
+    fn check_room(&self, cursor: &Cursor<'_>) -> Result<(), FileError> {
         // A block, its values, and what keeping them apart costs.
-        const LEAF: usize = size_of::<Block>() + size_of::<BlockValues>() + 48;
-        let room = self.leaves.len().saturating_mul(LEAF).saturating_add(self.tiles.len() * size_of::<Tile>());
+        const LEAF: usize = size_of::<GridBlock>() + size_of::<BlockValues>() + 48;
+        let room = self.leaves.len().saturating_mul(LEAF).saturating_add(self.tiles.len() * size_of::<GridTile>());
         self.cap.check(room, 0).map_err(|problem| problem.at_byte(cursor.at()))
     }
 
-    fn root(&mut self, cursor: &mut Cursor<'_>) -> Result<(), GridReadError> {
+    fn root(&mut self, cursor: &mut Cursor<'_>) -> Result<(), FileError> {
         const WHAT: &str = "the root of the tree";
         let (tiles, children) = (cursor.u32(WHAT)?, cursor.u32(WHAT)?);
         let mut corners = Vec::new();
@@ -76,7 +76,7 @@ impl Tree {
     }
 
     /// A node of `SIDES[level]` voxels.
-    fn node(&mut self, corner: IVec3, level: usize, cursor: &mut Cursor<'_>) -> Result<(), GridReadError> {
+    fn node(&mut self, corner: IVec3, level: usize, cursor: &mut Cursor<'_>) -> Result<(), FileError> {
         let what = ["a node of 4096 voxels", "a node of 128 voxels"][level];
         let [side, child] = [SIDES[level], SIDES[level + 1]];
         let count = ((side / child) as usize).pow(3);
@@ -103,7 +103,7 @@ impl Tree {
         children: &Mask,
         values: &[f32],
         cursor: &Cursor<'_>,
-    ) -> Result<(), GridReadError> {
+    ) -> Result<(), FileError> {
         for (n, &value) in values.iter().enumerate() {
             if !children.has(n) && value != self.format.background {
                 self.tile(corner + place(n, side, child), child, value, cursor)?;
@@ -113,7 +113,7 @@ impl Tree {
     }
 
     /// A tile, joined to the one before it along z where both have one value.
-    fn tile(&mut self, corner: IVec3, side: i32, value: f32, cursor: &Cursor<'_>) -> Result<(), GridReadError> {
+    fn tile(&mut self, corner: IVec3, side: i32, value: f32, cursor: &Cursor<'_>) -> Result<(), FileError> {
         finite(value, corner, cursor)?;
         if value == self.format.background {
             return Ok(());
@@ -124,7 +124,7 @@ impl Tree {
             {
                 last.length += side;
             }
-            _ => self.tiles.push(Tile { corner, side, length: side, value }),
+            _ => self.tiles.push(GridTile { corner, side, length: side, value }),
         }
         Ok(())
     }
@@ -132,7 +132,7 @@ impl Tree {
 
 impl Format {
     /// A leaf's values.
-    fn leaf(&self, corner: IVec3, cursor: &mut Cursor<'_>) -> Result<Block, GridReadError> {
+    fn leaf(&self, corner: IVec3, cursor: &mut Cursor<'_>) -> Result<GridBlock, FileError> {
         const WHAT: &str = "the values of a block";
         let active = cursor.mask(BLOCK_VOXELS, WHAT)?;
         let stored = self.values(cursor, &active, BLOCK_VOXELS, WHAT)?;
@@ -141,11 +141,11 @@ impl Format {
             finite(value, corner + place(n, SIDES[2], 1), cursor)?;
             values[in_block(n)] = value;
         }
-        Ok(Block { corner, values })
+        Ok(GridBlock { corner, values })
     }
 }
 
-fn corner(cursor: &mut Cursor<'_>) -> Result<IVec3, GridReadError> {
+fn corner(cursor: &mut Cursor<'_>) -> Result<IVec3, FileError> {
     let corner = cursor.voxel("the root of the tree")?;
     let sound =
         corner & (SIDES[0] - 1) == IVec3::ZERO && corner.to_array().iter().all(|k| k.unsigned_abs() <= FARTHEST as u32);
@@ -158,8 +158,8 @@ fn corner(cursor: &mut Cursor<'_>) -> Result<IVec3, GridReadError> {
     }
 }
 
-fn finite(value: f32, voxel: IVec3, cursor: &Cursor<'_>) -> Result<(), GridReadError> {
+fn finite(value: f32, voxel: IVec3, cursor: &Cursor<'_>) -> Result<(), FileError> {
     let voxel = voxel.to_array().map(i64::from);
-    let problem = GridReadProblem::NotFinite { voxel, value };
+    let problem = FileProblem::NotFiniteVoxel { voxel, value };
     if value.is_finite() { Ok(()) } else { Err(problem.at_byte(cursor.at())) }
 }

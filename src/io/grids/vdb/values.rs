@@ -2,10 +2,10 @@
 
 use flate2::read::ZlibDecoder;
 
-use super::super::error::{GridReadError, GridReadProblem};
 use super::super::numbers::{self, Kind};
 use super::cursor::{Cursor, Mask};
 use super::{COMPRESS_ACTIVE_MASK, COMPRESS_BLOSC, COMPRESS_ZIP, blosc};
+use crate::io::error::{FileError, FileProblem};
 
 /// How the values of inactive entries are said, from the byte before the values of a node.
 mod inactive {
@@ -37,7 +37,7 @@ pub(super) struct Format {
 
 impl Format {
     /// A number outside the buffers.
-    pub(super) fn number(&self, cursor: &mut Cursor<'_>, what: &str) -> Result<f32, GridReadError> {
+    pub(super) fn number(&self, cursor: &mut Cursor<'_>, what: &str) -> Result<f32, FileError> {
         match self.number {
             Kind::F64 => cursor.f64(what).map(|value| value as f32),
             _ => cursor.f32(what),
@@ -51,7 +51,7 @@ impl Format {
         active: &Mask,
         count: usize,
         what: &str,
-    ) -> Result<Vec<f32>, GridReadError> {
+    ) -> Result<Vec<f32>, FileError> {
         use inactive::{MASK_AND_ONE, MASK_AND_TWO, ONE, STORED};
         let how = cursor.u8(what)?;
         if how > STORED {
@@ -78,7 +78,7 @@ impl Format {
     }
 
     /// `count` numbers, perhaps compressed.
-    fn data(&self, cursor: &mut Cursor<'_>, count: usize, what: &str) -> Result<Vec<f32>, GridReadError> {
+    fn data(&self, cursor: &mut Cursor<'_>, count: usize, what: &str) -> Result<Vec<f32>, FileError> {
         let size = count * self.stored.width();
         // Numbers of 16 bits are not even announced where there are none.
         if self.stored == Kind::F16 && count == 0 {
@@ -106,6 +106,6 @@ impl Format {
     }
 }
 
-fn unzip(data: &[u8], size: usize) -> Result<Vec<u8>, GridReadProblem> {
+fn unzip(data: &[u8], size: usize) -> Result<Vec<u8>, FileProblem> {
     numbers::unpack(ZlibDecoder::new(data), size)
 }

@@ -6,11 +6,12 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
+use super::super::format::VDB_MAGIC as MAGIC;
 use super::super::{BLOCK_VOXELS, DistanceSamples, remark};
 use super::leaves::{Leaf, Leaves, has};
 use super::transform::SCALE_TRANSLATE;
 use super::values::{BACKGROUND, MASK, MINUS_BACKGROUND};
-use super::{COMPRESS_ACTIVE_MASK, LATTICE_DIMS, MAGIC, SIDES, TREES, offset, place};
+use super::{COMPRESS_ACTIVE_MASK, LATTICE_DIMS, SIDES, TREES, offset, place};
 
 /// The version of the format, and that of the library that first wrote it.
 const VERSION: [u32; 3] = [224, 4, 0];

@@ -4,9 +4,10 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::read::ZlibDecoder;
 
-use super::super::error::{GridReadError, GridReadProblem, shown};
 use super::super::numbers::{self, Cap, Kind};
 use super::xml::{Appended, Array, Attributes};
+use crate::io::error::{FileError, FileProblem};
+use crate::io::text::quoted;
 
 /// How the whole file stores its numbers.
 #[derive(Clone, Copy)]
@@ -21,9 +22,9 @@ pub(super) struct Storage {
 }
 
 impl Storage {
-    pub(super) fn new(file: &Attributes, cap: Cap) -> Result<Self, GridReadError> {
+    pub(super) fn new(file: &Attributes, cap: Cap) -> Result<Self, FileError> {
         let wrong = |expected: &str, found: &str| {
-            Err(GridReadProblem::syntax(expected, shown(found.as_bytes())).at_byte(file.byte))
+            Err(FileProblem::syntax(expected, quoted(found.as_bytes())).at_byte(file.byte))
         };
         let big = match file.get("byte_order") {
             Some("LittleEndian") | None => false,
@@ -39,9 +40,9 @@ impl Storage {
             None | Some("") => false,
             Some("vtkZLibDataCompressor") => true,
             Some(other) => {
-                let name = shown(other.as_bytes());
+                let name = quoted(other.as_bytes());
                 let text = format!("the compressor {name} is not read here: save it with ZLib, or without compression");
-                return Err(GridReadProblem::Unsupported(text).at_byte(file.byte));
+                return Err(FileProblem::Unsupported(text).at_byte(file.byte));
             }
         };
         Ok(Self { big, word, zlib, cap })
@@ -53,11 +54,11 @@ impl Storage {
         array: &Array<'_>,
         count: usize,
         appended: Option<Appended<'_>>,
-    ) -> Result<Vec<f32>, GridReadError> {
+    ) -> Result<Vec<f32>, FileError> {
         let place = array.attributes.byte;
         let wrong = |expected: &str, found: Option<&str>| {
-            let found = found.map_or("none".to_owned(), |found| shown(found.as_bytes()));
-            GridReadProblem::syntax(expected, found).at_byte(place)
+            let found = found.map_or("none".to_owned(), |found| quoted(found.as_bytes()));
+            FileProblem::syntax(expected, found).at_byte(place)
         };
         let name = array.attributes.get("type");
         let kind = name.and_then(kind).ok_or_else(|| wrong("a type of numbers, such as Float32,", name))?;
@@ -85,9 +86,9 @@ impl Storage {
     }
 
     /// The length in bytes, then the bytes.
-    fn plain(&self, source: Source<'_>, size: usize, count: usize) -> Result<Vec<u8>, GridReadProblem> {
+    fn plain(&self, source: Source<'_>, size: usize, count: usize) -> Result<Vec<u8>, FileProblem> {
         let whole = size.checked_add(self.word);
-        let whole = whole.ok_or_else(|| GridReadProblem::truncated(format!("{size} bytes"), "there are fewer"))?;
+        let whole = whole.ok_or_else(|| FileProblem::truncated(format!("{size} bytes"), "there are fewer"))?;
         self.check_size(self.count(&source.take(0, self.word)?, 0), size)?;
         self.cap.check_values(count, size)?;
         let mut bytes = source.take(0, whole)?;
@@ -96,7 +97,7 @@ impl Storage {
     }
 
     /// The number of blocks, the size of a whole one and of the last, the packed size of each, and then the blocks.
-    fn unzip(&self, source: Source<'_>, size: usize, count: usize) -> Result<Vec<u8>, GridReadProblem> {
+    fn unzip(&self, source: Source<'_>, size: usize, count: usize) -> Result<Vec<u8>, FileProblem> {
         let start = source.take(0, 3 * self.word)?;
         let [blocks, whole, last] = [0, 1, 2].map(|n| self.count(&start, n));
         let partial = u64::from(last > 0);
@@ -104,7 +105,7 @@ impl Storage {
         self.check_size(total.unwrap_or(u64::MAX), size)?;
         self.cap.check_values(count, size)?;
         let sizes = usize::try_from(blocks).ok().and_then(|blocks| blocks.checked_add(3)?.checked_mul(self.word));
-        let many = || GridReadProblem::truncated(format!("{blocks} packed blocks"), "there are fewer");
+        let many = || FileProblem::truncated(format!("{blocks} packed blocks"), "there are fewer");
         let header = source.take(0, sizes.ok_or_else(many)?)?;
         let packed = (3..header.len() / self.word)
             .try_fold(0u64, |sum, n| sum.checked_add(self.count(&header, n)))
@@ -119,16 +120,14 @@ impl Storage {
         }
         match left {
             0 => Ok(bytes),
-            _ => {
-                Err(GridReadProblem::truncated(format!("{size} bytes after unpacking"), format!("{left} are missing")))
-            }
+            _ => Err(FileProblem::truncated(format!("{size} bytes after unpacking"), format!("{left} are missing"))),
         }
     }
 
-    fn check_size(&self, found: u64, size: usize) -> Result<(), GridReadProblem> {
+    fn check_size(&self, found: u64, size: usize) -> Result<(), FileProblem> {
         match found == size as u64 {
             true => Ok(()),
-            false => Err(GridReadProblem::syntax(format!("{size} bytes of numbers"), format!("{found}"))),
+            false => Err(FileProblem::syntax(format!("{size} bytes of numbers"), format!("{found}"))),
         }
     }
 
@@ -154,21 +153,18 @@ impl Source<'_> {
     }
 
     /// `size` bytes from character `start` on.
-    fn take(&self, start: usize, size: usize) -> Result<Vec<u8>, GridReadProblem> {
+    fn take(&self, start: usize, size: usize) -> Result<Vec<u8>, FileProblem> {
         let there = self.data.get(start..).unwrap_or_default();
         let piece = there.get(..self.encoded(size));
         if !self.base64 {
-            let short = || GridReadProblem::truncated(format!("{size} bytes"), format!("{} are there", there.len()));
+            let short = || FileProblem::truncated(format!("{size} bytes"), format!("{} are there", there.len()));
             return piece.map(<[u8]>::to_vec).ok_or_else(short);
         }
         let short = || {
-            GridReadProblem::truncated(
-                format!("{size} bytes in base64"),
-                format!("{} characters are there", there.len()),
-            )
+            FileProblem::truncated(format!("{size} bytes in base64"), format!("{} characters are there", there.len()))
         };
         let decoded = STANDARD.decode(piece.ok_or_else(short)?);
-        let mut decoded = decoded.map_err(|e| GridReadProblem::syntax("base64", e.to_string()))?;
+        let mut decoded = decoded.map_err(|e| FileProblem::syntax("base64", e.to_string()))?;
         if decoded.len() < size {
             return Err(short());
         }

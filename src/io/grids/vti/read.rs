@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
-use super::super::error::{GridReadError, GridReadProblem, shown};
 use super::super::numbers::{Cap, count};
 use super::super::{GridFile, GridFormat, GridValues, all_finite, one_spacing, spacing_of_axes};
 use super::arrays::Storage;
 use super::xml::{Array, Document, Section, parse};
 use crate::io::Unit;
+use crate::io::error::{FileError, FileProblem};
+use crate::io::text::quoted;
 
 /// Where the points of the image are.
 struct Frame {
@@ -17,7 +18,7 @@ struct Frame {
     points: [usize; 3],
 }
 
-pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, GridReadError> {
+pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, FileError> {
     let document = parse(bytes)?;
     let mut frame = frame(&document)?;
     let array = chosen(&document)?;
@@ -28,8 +29,7 @@ pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, Gri
         frame.points = frame.points.map(|points| (points - 1).max(1));
     }
     let dims = frame.points;
-    let many =
-        || GridReadProblem::truncated(format!("{dims:?} numbers"), "there are fewer").at_byte(array.attributes.byte);
+    let many = || FileProblem::truncated(format!("{dims:?} numbers"), "there are fewer").at_byte(array.attributes.byte);
     let storage = Storage::new(&document.file, cap)?;
     let mut values = storage.numbers(array, count(dims).ok_or_else(many)?, document.appended)?;
     all_finite(&values, dims)?;
@@ -49,18 +49,18 @@ pub(in crate::io::grids) fn read(bytes: &[u8], cap: Cap) -> Result<GridFile, Gri
     })
 }
 
-fn frame(document: &Document<'_>) -> Result<Frame, GridReadError> {
+fn frame(document: &Document<'_>) -> Result<Frame, FileError> {
     let image = &document.image;
-    let wrong = |problem: GridReadProblem| problem.at_byte(image.byte);
+    let wrong = |problem: FileProblem| problem.at_byte(image.byte);
     let extent = image.numbers::<i64, 6>("WholeExtent")?;
-    let extent = extent.ok_or_else(|| wrong(GridReadProblem::syntax("the attribute WholeExtent", "none")))?;
+    let extent = extent.ok_or_else(|| wrong(FileProblem::syntax("the attribute WholeExtent", "none")))?;
     let points = [0, 1, 2].map(|k| {
         let cells = extent[2 * k + 1].checked_sub(extent[2 * k])?;
         usize::try_from(cells).ok()?.checked_add(1)
     });
     let [Some(x), Some(y), Some(z)] = points else {
-        let found = shown(image.get("WholeExtent").unwrap_or_default().as_bytes());
-        return Err(wrong(GridReadProblem::syntax("a first and a last point along x, y and z", found)));
+        let found = quoted(image.get("WholeExtent").unwrap_or_default().as_bytes());
+        return Err(wrong(FileProblem::syntax("a first and a last point along x, y and z", found)));
     };
     one_piece(document, extent)?;
     let spacing = image.numbers("Spacing")?.unwrap_or([1.0; 3]);
@@ -74,26 +74,26 @@ fn frame(document: &Document<'_>) -> Result<Frame, GridReadError> {
     let origin = DVec3::from(image.numbers("Origin")?.unwrap_or([0.0; 3])) + first * spacing;
     match origin.is_finite() {
         true => Ok(Frame { origin, spacing, points: [x, y, z] }),
-        false => Err(wrong(GridReadProblem::syntax("finite numbers as Origin", origin.to_string()))),
+        false => Err(wrong(FileProblem::syntax("finite numbers as Origin", origin.to_string()))),
     }
 }
 
-fn one_piece(document: &Document<'_>, extent: [i64; 6]) -> Result<(), GridReadError> {
+fn one_piece(document: &Document<'_>, extent: [i64; 6]) -> Result<(), FileError> {
     let [piece] = document.pieces.as_slice() else {
         let text = format!("it has {} pieces; save it as one", document.pieces.len());
-        return Err(GridReadProblem::Unsupported(text).at_byte(document.image.byte));
+        return Err(FileProblem::Unsupported(text).at_byte(document.image.byte));
     };
     match piece.numbers::<i64, 6>("Extent")? {
         Some(part) if part != extent => {
             let text = "its piece does not cover the whole extent; save the whole as one piece";
-            Err(GridReadProblem::unsupported(text).at_byte(piece.byte))
+            Err(FileProblem::unsupported(text).at_byte(piece.byte))
         }
         _ => Ok(()),
     }
 }
 
 /// The array of points, else of cells, that the file names as its scalars, else the first of single numbers.
-fn chosen<'a, 'b>(document: &'b Document<'a>) -> Result<&'b Array<'a>, GridReadError> {
+fn chosen<'a, 'b>(document: &'b Document<'a>) -> Result<&'b Array<'a>, FileError> {
     let single = |array: &&Array<'_>| matches!(array.attributes.get("NumberOfComponents"), None | Some("0" | "1"));
     for (section, scalars) in [(Section::Points, &document.scalars[0]), (Section::Cells, &document.scalars[1])] {
         let arrays = || document.arrays.iter().filter(|array| array.section == section).filter(single);
@@ -102,7 +102,7 @@ fn chosen<'a, 'b>(document: &'b Document<'a>) -> Result<&'b Array<'a>, GridReadE
             return Ok(array);
         }
     }
-    let problem = GridReadProblem::syntax("an array of single numbers for points or cells", "none");
+    let problem = FileProblem::syntax("an array of single numbers for points or cells", "none");
     Err(problem.at_byte(document.image.byte))
 }
 
@@ -111,7 +111,7 @@ fn left_out(document: &Document<'_>, chosen: &Array<'_>) -> Vec<String> {
     let name = chosen.attributes.get("Name").unwrap_or_default();
     match others {
         0 => Vec::new(),
-        _ => vec![format!("the array {} was read; {others} more were left out", shown(name.as_bytes()))],
+        _ => vec![format!("the array {} was read; {others} more were left out", quoted(name.as_bytes()))],
     }
 }
 

@@ -3,7 +3,8 @@
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-use super::super::error::{GridReadError, GridReadProblem, shown};
+use crate::io::error::{FileError, FileProblem};
+use crate::io::text::quoted;
 
 /// What the elements say.
 pub(super) struct Document<'a> {
@@ -49,8 +50,8 @@ pub(super) struct Appended<'a> {
 }
 
 impl Attributes {
-    fn of(element: &BytesStart<'_>, byte: usize) -> Result<Self, GridReadError> {
-        let wrong = |found: String| GridReadProblem::syntax("name=\"value\"", found).at_byte(byte);
+    fn of(element: &BytesStart<'_>, byte: usize) -> Result<Self, FileError> {
+        let wrong = |found: String| FileProblem::syntax("name=\"value\"", found).at_byte(byte);
         let mut pairs = Vec::new();
         for attribute in element.attributes() {
             let attribute = attribute.map_err(|e| wrong(e.to_string()))?;
@@ -68,17 +69,17 @@ impl Attributes {
     pub(super) fn numbers<T: std::str::FromStr, const N: usize>(
         &self,
         name: &str,
-    ) -> Result<Option<[T; N]>, GridReadError> {
+    ) -> Result<Option<[T; N]>, FileError> {
         let Some(text) = self.get(name) else { return Ok(None) };
         let numbers: Option<Vec<T>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
         let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
-        let wrong = || GridReadProblem::syntax(format!("{N} numbers as {name}"), shown(text.as_bytes()));
+        let wrong = || FileProblem::syntax(format!("{N} numbers as {name}"), quoted(text.as_bytes()));
         numbers.ok_or_else(|| wrong().at_byte(self.byte)).map(Some)
     }
 }
 
 /// Reads the elements of `bytes`.
-pub(super) fn parse(bytes: &[u8]) -> Result<Document<'_>, GridReadError> {
+pub(super) fn parse(bytes: &[u8]) -> Result<Document<'_>, FileError> {
     let mut parser = Parser {
         reader: Reader::from_reader(bytes),
         bytes,
@@ -98,7 +99,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Document<'_>, GridReadError> {
     while parser.step()? {}
     match parser.seen {
         [true, true] => Ok(parser.document),
-        _ => Err(GridReadProblem::syntax("the elements VTKFile and ImageData", "neither or one").at_byte(bytes.len())),
+        _ => Err(FileProblem::syntax("the elements VTKFile and ImageData", "neither or one").at_byte(bytes.len())),
     }
 }
 
@@ -115,10 +116,10 @@ struct Parser<'a> {
 
 impl Parser<'_> {
     /// Reads one piece of XML; false at the end of what is wanted.
-    fn step(&mut self) -> Result<bool, GridReadError> {
+    fn step(&mut self) -> Result<bool, FileError> {
         let before = self.position();
         let event = self.reader.read_event();
-        let event = event.map_err(|e| GridReadProblem::syntax("XML", e.to_string()).at_byte(before))?;
+        let event = event.map_err(|e| FileProblem::syntax("XML", e.to_string()).at_byte(before))?;
         match event {
             Event::Start(element) => self.start(&element, before),
             Event::End(element) => {
@@ -132,7 +133,7 @@ impl Parser<'_> {
             }
             Event::Eof => {
                 let found = "the file ends";
-                Err(GridReadProblem::truncated("the end of the element VTKFile", found).at_byte(self.bytes.len()))
+                Err(FileProblem::truncated("the end of the element VTKFile", found).at_byte(self.bytes.len()))
             }
             _ => Ok(true),
         }
@@ -142,7 +143,7 @@ impl Parser<'_> {
         (self.reader.buffer_position() as usize).min(self.bytes.len())
     }
 
-    fn start(&mut self, element: &BytesStart<'_>, byte: usize) -> Result<bool, GridReadError> {
+    fn start(&mut self, element: &BytesStart<'_>, byte: usize) -> Result<bool, FileError> {
         let attributes = Attributes::of(element, byte)?;
         match element.name().as_ref() {
             b"VTKFile" => {
@@ -184,21 +185,21 @@ impl Parser<'_> {
         }
     }
 
-    fn append(&mut self, attributes: &Attributes) -> Result<(), GridReadError> {
+    fn append(&mut self, attributes: &Attributes) -> Result<(), FileError> {
         let base64 = match attributes.get("encoding") {
             Some("raw") => false,
             Some("base64") | None => true,
             Some(other) => {
-                let found = shown(other.as_bytes());
-                return Err(GridReadProblem::syntax("raw or base64 as encoding", found).at_byte(attributes.byte));
+                let found = quoted(other.as_bytes());
+                return Err(FileProblem::syntax("raw or base64 as encoding", found).at_byte(attributes.byte));
             }
         };
         let start = self.position();
         let rest = &self.bytes[start..];
         let blank = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
         if rest.get(blank) != Some(&b'_') {
-            let found = shown(&rest[..rest.len().min(20)]);
-            return Err(GridReadProblem::syntax("an underscore before the numbers", found).at_byte(start + blank));
+            let found = quoted(&rest[..rest.len().min(20)]);
+            return Err(FileProblem::syntax("an underscore before the numbers", found).at_byte(start + blank));
         }
         let byte = start + blank + 1;
         self.document.appended = Some(Appended { data: &self.bytes[byte..], base64, byte });
@@ -206,13 +207,13 @@ impl Parser<'_> {
     }
 }
 
-fn check_file(file: &Attributes) -> Result<(), GridReadError> {
+fn check_file(file: &Attributes) -> Result<(), FileError> {
     match file.get("type") {
         Some("ImageData") => Ok(()),
         Some(other) => {
-            let text = format!("it holds {}, not ImageData: resample it to an image", shown(other.as_bytes()));
-            Err(GridReadProblem::Unsupported(text).at_byte(file.byte))
+            let text = format!("it holds {}, not ImageData: resample it to an image", quoted(other.as_bytes()));
+            Err(FileProblem::Unsupported(text).at_byte(file.byte))
         }
-        None => Err(GridReadProblem::syntax("the attribute `type` of VTKFile", "none").at_byte(file.byte)),
+        None => Err(FileProblem::syntax("the attribute `type` of VTKFile", "none").at_byte(file.byte)),
     }
 }

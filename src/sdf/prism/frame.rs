@@ -7,7 +7,7 @@ use crate::mesh::Pseudonormals;
 /// A triangle of the surface in a frame of its own: the longest side lies on the r-axis, the third corner on the s-axis, and t
 /// is the height over its plane. Lattice coordinates, from `base`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Facet {
+pub struct TriangleFrame {
     /// A voxel near it: differences from there are exact where coordinates are large.
     pub base: IVec3,
     /// Origin of the frame, from `base`.
@@ -20,7 +20,7 @@ pub struct Facet {
     pub normals: [Vec3; 6],
 }
 
-impl Facet {
+impl TriangleFrame {
     /// Of triangle `t`, whose `corners` (lattice coordinates) are not in line.
     pub(super) fn new(t: usize, corners: [DVec3; 3], normal: DVec3, normals: &Pseudonormals) -> Self {
         let length = |k: usize| corners[k].distance_squared(corners[(k + 1) % 3]);

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::mesh::TriMesh;
+use crate::mesh::edges::Union;
 use crate::mesh::weld::welded_triangles;
 
 /// Beside an edge that bends, a rebuilt surface cannot be simplified within about this distance, h, on either side
@@ -19,7 +20,7 @@ const PLANE: f64 = 1e-3;
 
 /// What was found, square model units where it says no other.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Survey {
+pub(super) struct Outlook {
     /// What closes the holes: for each rim the area that it encloses.
     pub lids: f64,
     /// The part of it that lies in no plane: flat lids take few triangles.
@@ -36,7 +37,7 @@ struct Side {
     forwards: bool,
 }
 
-impl Survey {
+impl Outlook {
     /// Of one mesh; vertices of equal coordinates are one.
     pub(super) fn of(mesh: &TriMesh) -> Self {
         let triangles = welded_triangles(mesh);
@@ -61,8 +62,8 @@ impl Survey {
     }
 
     /// Of several.
-    pub(super) fn of_all(meshes: &[TriMesh]) -> Self {
-        meshes.iter().map(Self::of).fold(Self::default(), |mut all, mut one| {
+    pub(super) fn of_all(meshes: &[&TriMesh]) -> Self {
+        meshes.iter().map(|mesh| Self::of(mesh)).fold(Self::default(), |mut all, mut one| {
             all.lids += one.lids;
             all.curved_lids += one.curved_lids;
             all.bends.append(&mut one.bends);
@@ -88,28 +89,18 @@ fn flat(a: DVec3, b: DVec3) -> bool {
 
 /// Edges of one triangle each, joined where they share a vertex.
 struct Rims {
-    parent: Vec<u32>,
+    vertices: Union,
     edges: Vec<[u32; 2]>,
 }
 
 impl Rims {
     fn new(vertices: usize) -> Self {
-        Self { parent: (0..vertices as u32).collect(), edges: Vec::new() }
-    }
-
-    fn root(&mut self, mut v: u32) -> u32 {
-        while self.parent[v as usize] != v {
-            let next = self.parent[self.parent[v as usize] as usize];
-            self.parent[v as usize] = next;
-            v = next;
-        }
-        v
+        Self { vertices: Union::new(vertices), edges: Vec::new() }
     }
 
     fn add(&mut self, side: &Side) {
         let [a, b] = side.ends;
-        let (root_a, root_b) = (self.root(a), self.root(b));
-        self.parent[root_a.max(root_b) as usize] = root_a.min(root_b);
+        self.vertices.join(a, b);
         self.edges.push(if side.forwards { [a, b] } else { [b, a] });
     }
 
@@ -118,14 +109,14 @@ impl Rims {
         let mut vectors: FxHashMap<u32, DVec3> = FxHashMap::default();
         let edges = std::mem::take(&mut self.edges);
         for &[a, b] in &edges {
-            let root = self.root(a);
+            let root = self.vertices.root(a);
             // Seen from a vertex of the rim itself, so that far from the origin nothing is lost.
             let from = at(root);
             *vectors.entry(root).or_default() += (at(a) - from).cross(at(b) - from) / 2.0;
         }
         let mut curved: FxHashSet<u32> = FxHashSet::default();
         for [a, _] in edges {
-            let root = self.root(a);
+            let root = self.vertices.root(a);
             let vector = vectors[&root];
             if (at(a) - at(root)).dot(vector.normalize_or_zero()).abs() > PLANE * vector.length().sqrt() {
                 curved.insert(root);
@@ -158,30 +149,30 @@ mod tests {
     #[test]
     fn lids_are_as_large_as_the_holes() {
         let mut mesh = cuboid(DVec3::new(2.0, 3.0, 5.0));
-        assert_eq!(Survey::of(&mesh).lids, 0.0);
+        assert_eq!(Outlook::of(&mesh).lids, 0.0);
         // Without its last side, 3 by 5, it is open; corners of their own for each triangle change nothing.
         mesh.triangles.truncate(10);
-        assert!((Survey::of(&mesh).lids - 15.0).abs() < 1e-9);
+        assert!((Outlook::of(&mesh).lids - 15.0).abs() < 1e-9);
         let soup = TriMesh {
             positions: mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]).collect(),
             triangles: (0..10).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
         };
-        assert!((Survey::of(&soup).lids - 15.0).abs() < 1e-9);
-        assert_eq!(Survey::of(&soup).curved_lids, 0.0);
+        assert!((Outlook::of(&soup).lids - 15.0).abs() < 1e-9);
+        assert_eq!(Outlook::of(&soup).curved_lids, 0.0);
         mesh.triangles.drain(0..2);
         // With the one beside it, 2 by 3, both are one hole, which is closed by less than both sides.
-        let both = Survey::of(&mesh);
+        let both = Outlook::of(&mesh);
         assert!((both.lids - 15f64.hypot(6.0)).abs() < 1e-9 && both.curved_lids == both.lids);
     }
 
     #[test]
     fn only_what_lies_beside_bends_is_bent() {
-        let survey = Survey::of(&cuboid(DVec3::splat(10.0)));
+        let outlook = Outlook::of(&cuboid(DVec3::splat(10.0)));
         // Twelve edges of ten, each beside two triangles; the diagonals are flat.
-        assert!((survey.bent_cells(1.0) - 0.15 * 240.0).abs() < 1e-9);
+        assert!((outlook.bent_cells(1.0) - 0.15 * 240.0).abs() < 1e-9);
         // No more than there is.
-        assert!((survey.bent_cells(50.0) - 600.0 / 2500.0).abs() < 1e-9);
-        let two = Survey::of_all(&[cuboid(DVec3::ONE), cuboid(DVec3::ONE)]);
+        assert!((outlook.bent_cells(50.0) - 600.0 / 2500.0).abs() < 1e-9);
+        let two = Outlook::of_all(&[&cuboid(DVec3::ONE), &cuboid(DVec3::ONE)]);
         assert!((two.bent_cells(0.1) - 2.0 * 0.15 * 24.0 / 0.1).abs() < 1e-9);
     }
 }

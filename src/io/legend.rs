@@ -1,4 +1,4 @@
-//! What the colours of a map mean, as comments of the header.
+//! What the colours of a map mean: comments in the header of a PLY file.
 
 use std::fmt;
 

@@ -1,12 +1,11 @@
-//! Which processor makes the layered depth images.
+//! Which processor casts the rays and makes the fields of prisms: the results are the same to the last bit.
 
 use serde::Serialize;
 
-use super::Error;
-use crate::lattice::{Grid, Lattice};
+use crate::lattice::{DistanceField, Lattice};
 use crate::ldi::{Layers, ldis};
 use crate::mesh::TriMesh;
-use crate::progress::Progress;
+use crate::progress::{Progress, Stopped};
 use crate::sdf;
 use crate::sdf::exact::{ExactError, ExactOptions};
 
@@ -40,14 +39,30 @@ pub struct BackendReport {
     pub fallback: Option<String>,
 }
 
+/// Why a processor did not do its work.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum BackendError {
+    /// Interrupted, or the deadline passed.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// The graphics processor was asked for and cannot do it.
+    #[error("{reason}")]
+    Device {
+        /// One sentence: why.
+        reason: String,
+        /// What to try.
+        hint: String,
+    },
+}
+
 /// The LDIs by the processor that `backend` says. `crossings`: how many there will be, about.
-pub(super) fn layers(
+pub(crate) fn layers(
     soup: &TriMesh,
     lattice: &Lattice,
     backend: Backend,
     crossings: f64,
     progress: &Progress,
-) -> Result<(Vec<Layers>, BackendReport), Error> {
+) -> Result<(Vec<Layers>, BackendReport), BackendError> {
     let fallback = match backend {
         Backend::Cpu => None,
         Backend::Gpu => return gpu::forced(soup, lattice, progress),
@@ -63,13 +78,13 @@ pub(super) fn layers(
 
 /// The field of [`crate::sdf::prism::prism`] by the processor that `backend` says; a real graphics processor is taken where
 /// there is one, since it does all but sorting the slices.
-pub(super) fn prism(
+pub(crate) fn prism(
     mesh: &TriMesh,
     lattice: &Lattice,
     options: &ExactOptions,
     backend: Backend,
     progress: &Progress,
-) -> Result<(Grid<f32>, BackendReport), PrismError> {
+) -> Result<(DistanceField, BackendReport), PrismError> {
     let fallback = match backend {
         Backend::Cpu => None,
         Backend::Gpu => return gpu::prism(mesh, lattice, options, progress),
@@ -85,7 +100,7 @@ pub(super) fn prism(
 }
 
 /// Why there is no field.
-pub(super) enum PrismError {
+pub(crate) enum PrismError {
     /// Neither processor could.
     Field(ExactError),
     /// The graphics processor could not.
@@ -96,14 +111,13 @@ pub(super) enum PrismError {
 mod gpu {
     use super::*;
     use crate::gpu::{self, AdapterKind, Device, GpuError, GpuOptions, GpuReport, Wanted};
-    use crate::progress::Stopped;
 
     type Made = (Vec<Layers>, BackendReport);
 
-    pub fn forced(soup: &TriMesh, lattice: &Lattice, progress: &Progress) -> Result<Made, Error> {
+    pub fn forced(soup: &TriMesh, lattice: &Lattice, progress: &Progress) -> Result<Made, BackendError> {
         let failed = |error: GpuError| match error {
-            GpuError::Stopped(stopped) => Error::Stopped(stopped),
-            _ => Error::Gpu { reason: error.to_string(), hint: error.hint().into() },
+            GpuError::Stopped(stopped) => BackendError::Stopped(stopped),
+            _ => BackendError::Device { reason: error.to_string(), hint: error.hint().into() },
         };
         let device = Device::open(&Wanted::Any).map_err(failed)?;
         on(&device, soup, lattice, progress).map_err(failed)
@@ -153,7 +167,7 @@ mod gpu {
         lattice: &Lattice,
         options: &ExactOptions,
         progress: &Progress,
-    ) -> Result<(Grid<f32>, BackendReport), PrismError> {
+    ) -> Result<(DistanceField, BackendReport), PrismError> {
         let device = Device::open(&Wanted::Any).map_err(refused)?;
         prism_on(&device, mesh, lattice, options, progress)
     }
@@ -164,7 +178,7 @@ mod gpu {
         lattice: &Lattice,
         options: &ExactOptions,
         progress: &Progress,
-    ) -> Result<Option<(Grid<f32>, BackendReport)>, PrismError> {
+    ) -> Result<Option<(DistanceField, BackendReport)>, PrismError> {
         match Device::open(&Wanted::Hardware) {
             Ok(device) => prism_on(&device, mesh, lattice, options, progress).map(Some),
             Err(GpuError::NoAdapter { .. }) => Ok(None),
@@ -178,7 +192,7 @@ mod gpu {
         lattice: &Lattice,
         options: &ExactOptions,
         progress: &Progress,
-    ) -> Result<(Grid<f32>, BackendReport), PrismError> {
+    ) -> Result<(DistanceField, BackendReport), PrismError> {
         let (field, report) = gpu::prism(device, mesh, lattice, options, false, progress).map_err(refused)?;
         Ok((field, made_by(device, &report)))
     }
@@ -258,12 +272,11 @@ mod gpu {
 #[cfg(not(feature = "gpu"))]
 mod gpu {
     use super::*;
-    use crate::progress::Stopped;
 
     type Made = (Vec<Layers>, BackendReport);
 
-    pub fn forced(_: &TriMesh, _: &Lattice, _: &Progress) -> Result<Made, Error> {
-        Err(Error::Gpu { reason: "this build has no graphics backend".into(), hint: "--backend cpu".into() })
+    pub fn forced(_: &TriMesh, _: &Lattice, _: &Progress) -> Result<Made, BackendError> {
+        Err(BackendError::Device { reason: "this build has no graphics backend".into(), hint: "--backend cpu".into() })
     }
 
     pub fn if_it_pays(_: &TriMesh, _: &Lattice, _: f64, _: &Progress) -> Result<Option<Result<Made, String>>, Stopped> {
@@ -275,7 +288,7 @@ mod gpu {
         _: &Lattice,
         _: &ExactOptions,
         _: &Progress,
-    ) -> Result<(Grid<f32>, BackendReport), PrismError> {
+    ) -> Result<(DistanceField, BackendReport), PrismError> {
         Err(PrismError::Gpu { reason: "this build has no graphics backend".into(), hint: "--backend cpu".into() })
     }
 
@@ -284,21 +297,7 @@ mod gpu {
         _: &Lattice,
         _: &ExactOptions,
         _: &Progress,
-    ) -> Result<Option<(Grid<f32>, BackendReport)>, PrismError> {
+    ) -> Result<Option<(DistanceField, BackendReport)>, PrismError> {
         Ok(None)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::pipeline::{Report, solid};
-
-    #[test]
-    fn why_the_main_processor_stepped_in_is_a_line_of_the_report() {
-        let mut report = Report::default();
-        assert!(solid::warnings(&report).is_empty());
-        report.ldi.made_by.fallback = Some("it melted".into());
-        let lines = solid::warnings(&report);
-        assert!(lines.len() == 1 && lines[0].contains("it melted"), "{lines:?}");
     }
 }

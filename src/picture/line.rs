@@ -1,0 +1,54 @@
+//! Lines over a surface, and what they stand for.
+
+use glam::Vec3;
+
+use super::rgb::Rgb;
+
+/// What a line stands for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Style {
+    /// An edge like any other, drawn with a strength of 0 to 1.
+    Plain {
+        /// Opacity.
+        strength: f32,
+    },
+    /// A sharp edge, drawn with a strength of 0 to 1.
+    Sharp {
+        /// Opacity.
+        strength: f32,
+    },
+    /// An edge with more than two triangles.
+    Crowded,
+    /// An edge with one triangle.
+    Open,
+}
+
+impl Style {
+    /// Lines of higher rank cover those of lower rank.
+    pub(super) fn rank(self) -> u8 {
+        match self {
+            Self::Plain { .. } => 0,
+            Self::Sharp { .. } => 1,
+            Self::Crowded => 2,
+            Self::Open => 3,
+        }
+    }
+
+    /// Colour, opacity, and width in pixels.
+    pub(super) fn pen(self) -> (Rgb, f32, f32) {
+        const INK: Rgb = Rgb::new(0.012, 0.018, 0.03);
+        match self {
+            Self::Plain { strength } => (INK, 0.45 * strength, 0.8),
+            Self::Sharp { strength } => (INK, 0.85 * strength, 1.3),
+            Self::Crowded => (Rgb::new(0.80, 0.0, 0.62), 1.0, 3.0),
+            Self::Open => (Rgb::new(0.85, 0.0, 0.02), 1.0, 3.0),
+        }
+    }
+}
+
+/// A line in camera space, pixels.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line {
+    pub(super) ends: [Vec3; 2],
+    pub(super) style: Style,
+}

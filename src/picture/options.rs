@@ -1,0 +1,123 @@
+//! What is drawn, and how.
+
+use super::camera::View;
+use crate::io::Colours;
+use crate::mesh::TriMesh;
+use crate::progress::Stopped;
+
+/// The most pixels along a side of an image, before supersampling.
+const MAX_SIDE: u32 = 16_384;
+
+/// The most samples of an image: what is seen in one takes eight bytes.
+const MAX_SAMPLES: u64 = 1 << 27;
+
+/// Rows of pixels that one thread shades at a time.
+pub(super) const BAND: usize = 16;
+
+/// Which edges are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum EdgeDrawing {
+    /// None.
+    None,
+    /// Edges whose triangles are more than 30 degrees apart, and those without exactly two triangles.
+    #[default]
+    Sharp,
+    /// All edges, faint where triangles are small, and the sharp ones as above.
+    All,
+}
+
+/// What is seen where the mesh is not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Background {
+    /// White, opaque.
+    #[default]
+    White,
+    /// Nothing: alpha 0.
+    Transparent,
+}
+
+/// Options of [`render`] and [`render_pair`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderOptions {
+    /// Pixels across, 1 to 16,384.
+    pub width: u32,
+    /// Pixels down, 1 to 16,384.
+    pub height: u32,
+    /// From where the mesh is seen.
+    pub view: View,
+    /// Which edges are drawn.
+    pub edges: EdgeDrawing,
+    /// Whether defects are coloured: open edges red, edges with more than two triangles magenta, triangles that
+    /// intersect others yellow. Vertices of equal coordinates count as one.
+    pub defects: bool,
+    /// Samples along each side of a pixel, 1 to 8. One draws jagged outlines, 2 is good.
+    pub supersampling: u32,
+    /// Whether hollows are darkened by the share of the sky that they do not see.
+    pub occlusion: bool,
+    /// What is behind the mesh.
+    pub background: Background,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self {
+            width: 1024,
+            height: 768,
+            view: View::ISO,
+            edges: EdgeDrawing::Sharp,
+            defects: false,
+            supersampling: 2,
+            occlusion: true,
+            background: Background::White,
+        }
+    }
+}
+
+/// Why there is no picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum RenderError {
+    /// Interrupted, or the deadline passed.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+    /// Nothing to see.
+    #[error("there are no triangles to draw")]
+    Empty,
+    /// Sides of 0 or over 16,384 pixels, or supersampling out of 1 to 8.
+    #[error(
+        "a picture of {width} x {height} pixels with {supersampling} x {supersampling} samples each cannot be made: sides go from 1 to 16384, samples from 1 to 8"
+    )]
+    Size {
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+        /// Samples along each side of a pixel.
+        supersampling: u32,
+    },
+}
+
+/// A mesh, and the colours of its front sides.
+#[derive(Debug, Clone, Copy)]
+pub struct Painted<'a> {
+    /// The mesh.
+    pub mesh: &'a TriMesh,
+    /// Its colours; alpha does not count. `None`: grey.
+    pub colours: Option<&'a Colours>,
+}
+
+impl<'a> From<&'a TriMesh> for Painted<'a> {
+    fn from(mesh: &'a TriMesh) -> Self {
+        Self { mesh, colours: None }
+    }
+}
+
+/// Refuses sizes of images that cannot be made.
+pub(super) fn check_size([width, height]: [u32; 2], supersampling: u32) -> Result<(), RenderError> {
+    let side = 1..=MAX_SIDE;
+    let samples = u64::from(width) * u64::from(height) * u64::from(supersampling.min(9)).pow(2);
+    let small = samples <= MAX_SAMPLES;
+    if !side.contains(&width) || !side.contains(&height) || !(1..=8).contains(&supersampling) || !small {
+        return Err(RenderError::Size { width, height, supersampling });
+    }
+    Ok(())
+}

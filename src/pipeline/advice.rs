@@ -1,0 +1,199 @@
+//! What kind of trouble an error is, and what to try: the same questions for the errors of all pipelines.
+
+use super::{
+    BooleanError, CanalError, DistanceError, FieldError, HollowError, LimitError, MorphologyError, ThickenError,
+    ThicknessError,
+};
+use crate::mesh::NotSolid;
+use crate::progress::Stopped;
+
+/// What kind of trouble an error is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Trouble<'a> {
+    /// The caller stopped it, or its deadline passed.
+    Stopped(Stopped),
+    /// The options ask for what cannot be; other ones can.
+    Options,
+    /// The voxel size does not go with the coordinates.
+    Voxel,
+    /// The input encloses nothing, or is beyond what can be numbered.
+    Input,
+    /// An operand has no triangle with an area.
+    Empty {
+        /// Its number, from 0.
+        operand: usize,
+    },
+    /// More memory would be needed than allowed.
+    Memory(&'a LimitError),
+    /// There is no memory left.
+    NoRoom,
+    /// The graphics processor cannot do it.
+    Device,
+    /// What was made is not valid.
+    NotSolid(&'a NotSolid),
+    /// The caller contradicts itself: the expression names what was not given.
+    Call,
+}
+
+/// The errors of all pipelines answer these.
+pub trait Advice: std::error::Error {
+    /// What kind of trouble it is.
+    fn trouble(&self) -> Trouble<'_>;
+
+    /// Something to try, where the sentence of the error does not say it.
+    fn hint(&self) -> Option<String> {
+        None
+    }
+}
+
+impl Advice for LimitError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::Memory { .. } => Trouble::Memory(self),
+            Self::Triangles { .. } | Self::Crossings { .. } => Trouble::Input,
+        }
+    }
+}
+
+impl Advice for BooleanError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::Stopped(stopped) => Trouble::Stopped(*stopped),
+            Self::Empty { operand } => Trouble::Empty { operand: *operand },
+            Self::MissingOperand { .. } => Trouble::Call,
+            Self::Lattice(_) => Trouble::Voxel,
+            Self::Limit(limit) => limit.trouble(),
+            Self::Nothing(_) => Trouble::Input,
+            Self::Device { .. } => Trouble::Device,
+            Self::NotSolid(what) => Trouble::NotSolid(what),
+        }
+    }
+
+    fn hint(&self) -> Option<String> {
+        match self {
+            Self::Device { hint, .. } => Some(hint.clone()),
+            _ => None,
+        }
+    }
+}
+
+impl Advice for MorphologyError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::Stopped(stopped) => Trouble::Stopped(*stopped),
+            Self::Radius { .. } => Trouble::Options,
+            Self::Lattice(_) | Self::Distance(_) => Trouble::Voxel,
+            Self::Limit(limit) => limit.trouble(),
+            Self::NothingLeft { .. } | Self::AllTooThin { .. } => Trouble::Input,
+            Self::NotSolid(what) => Trouble::NotSolid(what),
+        }
+    }
+}
+
+impl Advice for CanalError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::Closing(error) => error.trouble(),
+            Self::Missing { .. } => Trouble::Options,
+        }
+    }
+
+    fn hint(&self) -> Option<String> {
+        matches!(self, Self::Missing { .. }).then(|| "without --remove they are listed with their numbers".into())
+    }
+}
+
+impl Advice for ThickenError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::WallsForVoxel { .. } | Self::WallsForModel { .. } => Trouble::Options,
+            Self::Empty => Trouble::Empty { operand: 0 },
+            Self::Offset(error) => error.trouble(),
+            Self::Union(error) => error.trouble(),
+        }
+    }
+}
+
+impl Advice for HollowError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::Stopped(stopped) => Trouble::Stopped(*stopped),
+            Self::TooThin { .. } | Self::Drain { .. } => Trouble::Options,
+            Self::NoCavity { .. } => Trouble::Input,
+            Self::Erosion(error) => error.trouble(),
+            Self::Difference(error) => error.trouble(),
+        }
+    }
+
+    fn hint(&self) -> Option<String> {
+        matches!(self, Self::Drain { .. }).then(|| "another point for it, or a thinner wall".into())
+    }
+}
+
+impl Advice for DistanceError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::Stopped(stopped) => Trouble::Stopped(*stopped),
+            Self::Empty => Trouble::Empty { operand: 0 },
+            Self::Lattice(_) | Self::Exact(_) => Trouble::Voxel,
+            Self::Limit(limit) => limit.trouble(),
+            Self::Levels(_) => Trouble::NoRoom,
+            Self::Nothing(_) => Trouble::Input,
+            Self::Device { .. } => Trouble::Device,
+        }
+    }
+
+    fn hint(&self) -> Option<String> {
+        match self {
+            Self::Device { hint, .. } => Some(hint.clone()),
+            _ => None,
+        }
+    }
+}
+
+impl Advice for FieldError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::Stopped(stopped) => Trouble::Stopped(*stopped),
+            Self::Lattice(_) => Trouble::Voxel,
+            Self::Limit(limit) => limit.trouble(),
+            Self::Filter(_) | Self::NoRamp { .. } => Trouble::Options,
+            Self::MissingField => Trouble::Call,
+            Self::Repair(error) => error.trouble(),
+            Self::Distance(error) => error.trouble(),
+            Self::NotSolid(what) => Trouble::NotSolid(what),
+            Self::Nothing | Self::NothingOnLattice | Self::Endless | Self::NoSize | Self::NoRadius | Self::NoBox => {
+                Trouble::Input
+            }
+        }
+    }
+
+    fn hint(&self) -> Option<String> {
+        match self {
+            Self::Repair(error) => error.hint(),
+            Self::Distance(error) => error.hint(),
+            _ => None,
+        }
+    }
+}
+
+impl Advice for ThicknessError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::Stopped(stopped) => Trouble::Stopped(*stopped),
+            Self::Empty => Trouble::Empty { operand: 0 },
+            Self::Lattice(_) => Trouble::Voxel,
+            Self::Limit(limit) => limit.trouble(),
+        }
+    }
+}
+
+impl<A: Advice + ?Sized> Advice for &A {
+    fn trouble(&self) -> Trouble<'_> {
+        (**self).trouble()
+    }
+
+    fn hint(&self) -> Option<String> {
+        (**self).hint()
+    }
+}

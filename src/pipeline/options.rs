@@ -1,0 +1,122 @@
+//! Options that several pipelines share.
+
+use serde::Serialize;
+
+use super::VoxelSize;
+use crate::backend::Backend;
+use crate::fit::FitOptions;
+use crate::orient::OrientMode;
+use crate::sdf::{RobustOptions, Trust};
+use crate::vote::VoteRule;
+
+/// Options of [`repair`](super::repair) and [`boolean`](super::boolean).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Spacing of the lattice.
+    pub voxel: VoxelSize,
+    /// Orientation of the input.
+    pub orient: OrientMode,
+    /// Voting rule.
+    pub vote: VoteRule,
+    /// The distance field near the surface; `None`: as the voting rule needs it.
+    pub robust: Option<RobustOptions>,
+    /// Whether edges that join two faces of one voxel's cube are collapsed after contouring.
+    pub collapse: bool,
+    /// Sharp edges and corners, and fewer triangles where the surface is flat; `None`: the contour as it is.
+    pub fit: Option<FitOptions>,
+    /// Upper bound for the working memory, bytes; `None`: no bound.
+    pub max_memory: Option<u64>,
+    /// Which processor casts the rays.
+    pub backend: Backend,
+    /// What numbers the result may have: those of the format that it is for.
+    pub precision: Precision,
+}
+
+/// How a pipeline that is given a solid makes surface anew.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceOptions {
+    /// Spacing of the lattice.
+    pub voxel: VoxelSize,
+    /// Whether edges that join two faces of one voxel's cube are collapsed after contouring.
+    pub collapse: bool,
+    /// Sharp edges and corners, and fewer triangles where the surface is flat; `None`: the contour as it is.
+    pub fit: Option<FitOptions>,
+    /// Upper bound for the working memory, bytes; `None`: no bound.
+    pub max_memory: Option<u64>,
+    /// What numbers the result may have: those of the format that it is for.
+    pub precision: Precision,
+}
+
+/// What numbers a result may have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    /// Every coordinate is an `f32`, so that STL and glTF hold it unchanged, and the result is valid with these; only for operands far from the
+    /// origin, which are worked on near it, coordinates get the offset back and have more digits.
+    Single,
+    /// What stays as it was keeps its `f64` coordinates; what is made has those of an `f32`, seen from near the operands.
+    #[default]
+    Double,
+}
+
+impl Precision {
+    /// What a format holds.
+    pub fn of_format(format: crate::io::Format) -> Self {
+        if format.is_single() { Self::Single } else { Self::Double }
+    }
+}
+
+impl Options {
+    /// The defaults at voxel size `voxel`.
+    pub fn new(voxel: VoxelSize) -> Self {
+        let SurfaceOptions { voxel, collapse, fit, max_memory, precision } = SurfaceOptions::new(voxel);
+        Self {
+            voxel,
+            orient: OrientMode::Auto,
+            vote: VoteRule::default(),
+            robust: None,
+            collapse,
+            fit,
+            max_memory,
+            backend: Backend::default(),
+            precision,
+        }
+    }
+
+    /// The part that says how surface is made anew.
+    pub fn surface(&self) -> SurfaceOptions {
+        let Self { voxel, collapse, fit, max_memory, precision, .. } = *self;
+        SurfaceOptions { voxel, collapse, fit, max_memory, precision }
+    }
+
+    /// The distance field near the surface. Only votes that end in the winding number have no noise to be smoothed away.
+    pub(super) fn robust(&self) -> RobustOptions {
+        let trust = if self.vote == VoteRule::Winding { Trust::All } else { Trust::Sure };
+        self.robust.unwrap_or(RobustOptions { trust, ..RobustOptions::default() })
+    }
+}
+
+impl SurfaceOptions {
+    /// The defaults at voxel size `voxel`.
+    pub fn new(voxel: VoxelSize) -> Self {
+        Self {
+            voxel,
+            collapse: true,
+            fit: Some(FitOptions::default()),
+            max_memory: None,
+            precision: Precision::default(),
+        }
+    }
+
+    /// The same at another voxel, model units.
+    pub(super) fn with_voxel(self, h: f64) -> Self {
+        Self { voxel: VoxelSize::Length(h), ..self }
+    }
+}
+
+impl From<SurfaceOptions> for Options {
+    fn from(surface: SurfaceOptions) -> Self {
+        let SurfaceOptions { voxel, collapse, fit, max_memory, precision } = surface;
+        Self { collapse, fit, max_memory, precision, ..Self::new(voxel) }
+    }
+}
