@@ -135,7 +135,7 @@ impl Failure {
             Trouble::Voxel => Self::new(if asked.voxel { Exit::Usage } else { Exit::Input }, error.to_string()),
             Trouble::Input => Self::input(error.to_string()),
             Trouble::NoRoom => Self::new(Exit::Memory, error.to_string()),
-            Trouble::Device | Trouble::Call => Self::internal(error.to_string()),
+            Trouble::Device | Trouble::Call | Trouble::Index => Self::internal(error.to_string()),
         };
         match error.hint() {
             Some(hint) => failure.hint(hint),
@@ -180,6 +180,7 @@ impl From<SolidError> for Failure {
     fn from(error: SolidError) -> Self {
         match error {
             SolidError::Stopped(stopped) => Self::from(stopped),
+            SolidError::Index(error) => Self::internal(error.to_string()),
             SolidError::NotSolid(what) => Self::not_solid(&what.validity),
         }
     }

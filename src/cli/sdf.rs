@@ -94,10 +94,10 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
         BandChoice::Within(length) => Some(length.resolve(&Scale { unit, diagonal, voxel: Some(spacing) })?),
     };
     let method = args.method.into();
-    let closed = matches!(method, DistanceMethod::Characteristics | DistanceMethod::Prism);
+    let closed = DistanceMethod::is_for_closed(method);
     backend::check_built(args.backend)?;
     if closed {
-        closed_only(args, validity)?;
+        pseudonormals_only(args)?;
     }
     let sign = match args.sign {
         Some(SignChoice::Pseudonormal | SignChoice::Winding | SignChoice::Levels)
@@ -107,28 +107,20 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
                 .hint("--method exact takes any --sign"));
         }
         Some(sign) => sign.into(),
-        None if closed => DistanceSign::Pseudonormal,
-        None if validity.is_valid() && method == DistanceMethod::Exact => DistanceSign::Pseudonormal,
-        None => DistanceSign::Votes,
+        None => DistanceSign::suited(validity, method),
     };
     let (orient, max_memory) = (args.orient.into(), machine::memory_cap(args.max_memory));
     Ok(DistanceOptions { voxel, band, method, sign, orient, max_memory, backend: args.backend.into() })
 }
 
-/// Refuses what characteristics and prisms are not for.
-fn closed_only(args: &SdfArgs, validity: &Validity) -> Result<(), Failure> {
+/// Refuses another sign for what goes by pseudonormals.
+fn pseudonormals_only(args: &SdfArgs) -> Result<(), Failure> {
     let name = args.method.to_possible_value().map_or_else(String::new, |value| value.get_name().to_string());
-    if !matches!(args.sign, None | Some(SignChoice::Pseudonormal)) {
-        return Err(Failure::usage(format!("--method {name} goes by pseudonormals; --sign cannot change that"))
-            .hint("--method exact takes any --sign"));
+    if matches!(args.sign, None | Some(SignChoice::Pseudonormal)) {
+        return Ok(());
     }
-    if !validity.is_oriented_manifold() {
-        let problems = validity.problems();
-        let why = problems.first().map_or("It is not.", String::as_str);
-        return Err(Failure::usage(format!("--method {name} needs a closed, oriented surface. {why}"))
-            .hint("repair it first (`meshwright repair`), or --method exact"));
-    }
-    Ok(())
+    Err(Failure::usage(format!("--method {name} goes by pseudonormals; --sign cannot change that"))
+        .hint("--method exact takes any --sign"))
 }
 
 /// The options as the report states them, after defaults.

@@ -2,7 +2,7 @@
 
 use std::ops::Deref;
 
-use super::{Defects, TriMesh, ValidateOptions, Validity, defects, validate};
+use super::{Defects, IndexError, TriMesh, ValidateOptions, Validity, defects, validate};
 use crate::progress::{Progress, Stopped};
 
 /// A mesh that bounds a solid: closed, oriented, 2-manifold, of positive volume, and free of degenerate, repeated and
@@ -47,6 +47,9 @@ pub enum SolidError {
     /// The check was interrupted, or its deadline passed.
     #[error(transparent)]
     Stopped(#[from] Stopped),
+    /// A triangle refers to a vertex that is not there.
+    #[error(transparent)]
+    Index(#[from] IndexError),
     /// The mesh bounds none.
     #[error(transparent)]
     NotSolid(Box<NotSolid>),
@@ -56,8 +59,9 @@ impl Solid {
     /// The mesh as a solid, if it is one.
     ///
     /// # Errors
-    /// [`SolidError::NotSolid`] says what is wrong, and gives the mesh back.
+    /// [`SolidError::NotSolid`] says what is wrong, and gives the mesh back; [`SolidError::Index`] for an index out of range.
     pub fn check(mesh: TriMesh, progress: &Progress) -> Result<Self, SolidError> {
+        mesh.check()?;
         let options = ValidateOptions { self_intersections: true, weld: false };
         let validity = validate(&mesh, &options, progress)?;
         if validity.is_valid() {

@@ -23,6 +23,8 @@ pub enum Trouble<'a> {
         /// Its number, from 0.
         operand: usize,
     },
+    /// A mesh that the caller made refers to vertices that it does not have.
+    Index,
     /// More memory would be needed than allowed.
     Memory(&'a LimitError),
     /// There is no memory left.
@@ -61,6 +63,7 @@ impl Advice for BooleanError {
             Self::Stopped(stopped) => Trouble::Stopped(*stopped),
             Self::Empty { operand } => Trouble::Empty { operand: *operand },
             Self::MissingOperand { .. } => Trouble::Call,
+            Self::Index { .. } => Trouble::Index,
             Self::Lattice(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
             Self::Nothing(_) => Trouble::Input,
@@ -84,6 +87,7 @@ impl Advice for MorphologyError {
             Self::Radius { .. } => Trouble::Options,
             Self::Lattice(_) | Self::Distance(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
+            Self::Index(_) => Trouble::Index,
             Self::NothingLeft { .. } | Self::AllTooThin { .. } => Trouble::Input,
             Self::NotSolid(what) => Trouble::NotSolid(what),
         }
@@ -108,6 +112,7 @@ impl Advice for ThickenError {
         match self {
             Self::WallsForVoxel { .. } | Self::WallsForModel { .. } => Trouble::Options,
             Self::Empty => Trouble::Empty { operand: 0 },
+            Self::Index(_) => Trouble::Index,
             Self::Offset(error) => error.trouble(),
             Self::Union(error) => error.trouble(),
         }
@@ -135,8 +140,10 @@ impl Advice for DistanceError {
         match self {
             Self::Stopped(stopped) => Trouble::Stopped(*stopped),
             Self::Empty => Trouble::Empty { operand: 0 },
+            Self::Index(_) => Trouble::Index,
             Self::Lattice(_) | Self::Exact(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
+            Self::NotClosed { .. } => Trouble::Options,
             Self::Levels(_) => Trouble::NoRoom,
             Self::Nothing(_) => Trouble::Input,
             Self::Device { .. } => Trouble::Device,
@@ -146,6 +153,7 @@ impl Advice for DistanceError {
     fn hint(&self) -> Option<String> {
         match self {
             Self::Device { hint, .. } => Some(hint.clone()),
+            Self::NotClosed { .. } => Some("repair it first (`meshwright repair`), or --method exact".into()),
             _ => None,
         }
     }
@@ -159,6 +167,7 @@ impl Advice for FieldError {
             Self::Limit(limit) => limit.trouble(),
             Self::Filter(_) | Self::NoRamp { .. } => Trouble::Options,
             Self::MissingField => Trouble::Call,
+            Self::Index(_) => Trouble::Index,
             Self::Repair(error) => error.trouble(),
             Self::Distance(error) => error.trouble(),
             Self::NotSolid(what) => Trouble::NotSolid(what),
@@ -182,6 +191,7 @@ impl Advice for ThicknessError {
         match self {
             Self::Stopped(stopped) => Trouble::Stopped(*stopped),
             Self::Empty => Trouble::Empty { operand: 0 },
+            Self::Index(_) => Trouble::Index,
             Self::Lattice(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
         }

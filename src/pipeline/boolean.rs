@@ -8,7 +8,7 @@ use super::stages::Stages;
 use super::{Draft, LatticeError, LimitError, NothingEnclosed, Operand, Options, Outcome, plan, report, sizing};
 use crate::backend::BackendError;
 use crate::ldi::Expression;
-use crate::mesh::{NotSolid, SolidError, TriMesh};
+use crate::mesh::{IndexError, NotSolid, SolidError, TriMesh};
 use crate::progress::{Progress, Stopped};
 use crate::survey::{Soup, SoupError};
 
@@ -23,6 +23,14 @@ pub enum BooleanError {
     Empty {
         /// Number of the operand, from 0.
         operand: usize,
+    },
+    /// A triangle of an operand refers to a vertex that is not there.
+    #[error("operand {operand}: {error}")]
+    Index {
+        /// Number of the operand, from 0.
+        operand: usize,
+        /// Which triangle and which vertex.
+        error: IndexError,
     },
     /// The expression names an operand that was not given.
     #[error("the expression names operand {operand}, but only {given} were given")]
@@ -77,12 +85,15 @@ pub fn boolean<'a>(
     options: &Options,
     progress: &Progress,
 ) -> Result<Outcome, BooleanError> {
-    let operands: Vec<Operand<'_>> = operands.into_iter().map(Into::into).collect();
+    let (operands, expression) = Operand::with_negatives(operands, expression);
     let (needed, given) = (expression.operand_count(), operands.len());
     if needed > given {
         return Err(BooleanError::MissingOperand { operand: needed - 1, given });
     }
-    let ordered = Ordered::new(operands, expression);
+    for (operand, given) in operands.iter().enumerate() {
+        given.mesh.check().map_err(|error| BooleanError::Index { operand, error })?;
+    }
+    let ordered = Ordered::new(operands, &expression);
     evaluate(&ordered.operands, &ordered.expression, options, progress)
         .map(|outcome| ordered.back(outcome))
         .map_err(|error| ordered.error(error))
@@ -148,6 +159,7 @@ impl From<SolidError> for BooleanError {
     fn from(error: SolidError) -> Self {
         match error {
             SolidError::Stopped(stopped) => Self::Stopped(stopped),
+            SolidError::Index(error) => Self::Index { operand: 0, error },
             SolidError::NotSolid(what) => Self::NotSolid(what),
         }
     }

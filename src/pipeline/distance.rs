@@ -13,7 +13,7 @@ use crate::backend::{self, Backend, BackendReport, PrismError};
 use crate::digits;
 use crate::lattice::{BRICK, DistanceField, Lattice, Slot};
 use crate::ldi::{Expression, MAX_VOXELS};
-use crate::mesh::TriMesh;
+use crate::mesh::{IndexError, TriMesh, ValidateOptions, Validity, validate};
 use crate::orient::{OrientMode, OrientReport};
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::{self, Band, ExactError, ExactOptions, Sign};
@@ -63,6 +63,31 @@ pub enum DistanceSign {
     Levels,
 }
 
+impl DistanceMethod {
+    /// As people call it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Exact => "exact distance",
+            Self::Characteristics => "characteristics",
+            Self::Prism => "prisms",
+            Self::Robust => "votes",
+        }
+    }
+
+    /// Whether it is for closed, oriented surfaces only.
+    pub fn is_for_closed(self) -> bool {
+        matches!(self, Self::Characteristics | Self::Prism)
+    }
+}
+
+impl DistanceSign {
+    /// The sign that suits a mesh of this state: pseudonormals where they are exact, votes where the mesh is a soup.
+    pub fn suited(validity: &Validity, method: DistanceMethod) -> Self {
+        let exact = validity.is_valid() && method == DistanceMethod::Exact;
+        if exact || method.is_for_closed() { Self::Pseudonormal } else { Self::Votes }
+    }
+}
+
 /// Options of [`distance`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DistanceOptions {
@@ -84,6 +109,20 @@ pub struct DistanceOptions {
 }
 
 impl DistanceOptions {
+    /// The exact distance over the whole lattice, with votes for the sign: right for any mesh. [`DistanceSign::suited`] chooses what is faster
+    /// where it is right as well.
+    pub fn new(voxel: VoxelSize) -> Self {
+        Self {
+            voxel,
+            band: None,
+            method: DistanceMethod::Exact,
+            sign: DistanceSign::Votes,
+            backend: Backend::default(),
+            orient: OrientMode::Auto,
+            max_memory: None,
+        }
+    }
+
     /// Whether rays vote.
     fn votes(&self) -> bool {
         match self.method {
@@ -156,6 +195,17 @@ pub enum DistanceError {
     /// There is no triangle with an area.
     #[error("there is no triangle with an area")]
     Empty,
+    /// A triangle refers to a vertex that is not there.
+    #[error(transparent)]
+    Index(#[from] IndexError),
+    /// The method needs a closed, oriented surface, and this is none.
+    #[error("a field by {} needs a closed, oriented surface. {problem}", method.word())]
+    NotClosed {
+        /// The method.
+        method: DistanceMethod,
+        /// What is wrong with the surface, as a sentence.
+        problem: String,
+    },
     /// The voxel size, or the band, cannot be used with these coordinates.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
@@ -196,6 +246,8 @@ pub fn distance(
     options: &DistanceOptions,
     progress: &Progress,
 ) -> Result<DistanceOutcome, DistanceError> {
+    input.check()?;
+    check_closed(input, options.method, progress)?;
     let frame = input.bounds().map_or_else(Frame::default, |bounds| Frame::around(&bounds));
     let input = &*frame.local(input);
     let (lattice, band) = place(input, options)?;
@@ -229,6 +281,20 @@ pub fn distance(
     outcome.report.vote.iter_mut().for_each(|vote| frame.votes(vote));
     outcome.describe(band);
     Ok(outcome)
+}
+
+/// Refuses a surface that the method would give a wrong field for.
+fn check_closed(input: &TriMesh, method: DistanceMethod, progress: &Progress) -> Result<(), DistanceError> {
+    if !method.is_for_closed() {
+        return Ok(());
+    }
+    let look = ValidateOptions { self_intersections: false, weld: true };
+    let validity = validate(input, &look, progress)?;
+    if validity.is_oriented_manifold() {
+        return Ok(());
+    }
+    let problem = validity.problems().first().map_or_else(|| "It is not.".into(), String::clone);
+    Err(DistanceError::NotClosed { method, problem })
 }
 
 /// The lattice, grown by the band, and the band in h.

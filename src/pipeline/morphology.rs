@@ -8,7 +8,7 @@ use super::plan::{Offsets, of_offsets};
 use super::stages::Stages;
 use super::{Changed, LatticeError, LimitError, Plan, Report, SurfaceOptions, sizing};
 use crate::digits;
-use crate::mesh::{NotSolid, Solid, SolidError, TriMesh};
+use crate::mesh::{IndexError, NotSolid, Solid, SolidError, TriMesh};
 use crate::morphology::{Body, OffsetError, Operation, places};
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::ExactError;
@@ -85,6 +85,9 @@ pub enum MorphologyError {
         /// The smallest voxel that was tried.
         voxel: f64,
     },
+    /// What was made refers to a vertex that is not there.
+    #[error(transparent)]
+    Index(IndexError),
     /// What was made is not a valid solid. The fit sees to it that it is; without one, it may not be.
     #[error(transparent)]
     NotSolid(Box<NotSolid>),
@@ -104,7 +107,7 @@ impl Solid {
     ///
     /// # Errors
     /// See [`MorphologyError`].
-    pub fn dilate(&self, radius: f64, surface: &SurfaceOptions) -> Result<Self, MorphologyError> {
+    pub fn dilate(&self, radius: f64, surface: impl Into<SurfaceOptions>) -> Result<Self, MorphologyError> {
         self.by(Operation::Dilate, radius, surface)
     }
 
@@ -112,7 +115,7 @@ impl Solid {
     ///
     /// # Errors
     /// See [`MorphologyError`].
-    pub fn erode(&self, radius: f64, surface: &SurfaceOptions) -> Result<Self, MorphologyError> {
+    pub fn erode(&self, radius: f64, surface: impl Into<SurfaceOptions>) -> Result<Self, MorphologyError> {
         self.by(Operation::Erode, radius, surface)
     }
 
@@ -121,7 +124,7 @@ impl Solid {
     ///
     /// # Errors
     /// See [`MorphologyError`].
-    pub fn close(&self, radius: f64, surface: &SurfaceOptions) -> Result<Self, MorphologyError> {
+    pub fn close(&self, radius: f64, surface: impl Into<SurfaceOptions>) -> Result<Self, MorphologyError> {
         self.by(Operation::Close, radius, surface)
     }
 
@@ -130,12 +133,17 @@ impl Solid {
     ///
     /// # Errors
     /// See [`MorphologyError`].
-    pub fn open(&self, radius: f64, surface: &SurfaceOptions) -> Result<Self, MorphologyError> {
+    pub fn open(&self, radius: f64, surface: impl Into<SurfaceOptions>) -> Result<Self, MorphologyError> {
         self.by(Operation::Open, radius, surface)
     }
 
-    fn by(&self, operation: Operation, radius: f64, surface: &SurfaceOptions) -> Result<Self, MorphologyError> {
-        let options = MorphologyOptions { operation, radius, sharp: None, surface: *surface };
+    fn by(
+        &self,
+        operation: Operation,
+        radius: f64,
+        surface: impl Into<SurfaceOptions>,
+    ) -> Result<Self, MorphologyError> {
+        let options = MorphologyOptions { operation, radius, sharp: None, surface: surface.into() };
         morphology(self, &options, &Progress::none()).map(|changed| changed.solid)
     }
 }
@@ -239,6 +247,7 @@ impl From<SolidError> for MorphologyError {
     fn from(error: SolidError) -> Self {
         match error {
             SolidError::Stopped(stopped) => Self::Stopped(stopped),
+            SolidError::Index(error) => Self::Index(error),
             SolidError::NotSolid(what) => Self::NotSolid(what),
         }
     }

@@ -120,3 +120,27 @@ impl From<SurfaceOptions> for Options {
         Self { collapse, fit, max_memory, precision, ..Self::new(voxel) }
     }
 }
+
+impl From<VoxelSize> for Options {
+    fn from(voxel: VoxelSize) -> Self {
+        Self::new(voxel)
+    }
+}
+
+impl From<&Self> for Options {
+    fn from(options: &Self) -> Self {
+        *options
+    }
+}
+
+impl From<VoxelSize> for SurfaceOptions {
+    fn from(voxel: VoxelSize) -> Self {
+        Self::new(voxel)
+    }
+}
+
+impl From<&Self> for SurfaceOptions {
+    fn from(options: &Self) -> Self {
+        *options
+    }
+}

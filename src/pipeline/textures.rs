@@ -93,7 +93,7 @@ pub fn carry_texture_to_simpler(
 ) -> Option<TextureMap> {
     let sources: Vec<TriangleSource> =
         origins.iter().map(|&triangle| TriangleSource::Operand { operand: 0, triangle }).collect();
-    carry_texture(mesh, &sources, &[Operand { mesh: source, colours: None, texture: Some(texture) }])
+    carry_texture(mesh, &sources, &[Operand { mesh: source, colours: None, texture: Some(texture), negative: None }])
 }
 
 /// The name, the colour and the image of a material.

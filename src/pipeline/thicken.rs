@@ -12,7 +12,7 @@ use super::stages::Stages;
 use super::{BooleanError, Changed, MorphologyError, Plan, Report, SurfaceOptions, TriangleSource, boolean, sizing};
 use crate::digits;
 use crate::ldi::Expression;
-use crate::mesh::{Bounds, Pseudonormals, Solid, TriMesh};
+use crate::mesh::{Bounds, IndexError, Pseudonormals, Solid, TriMesh};
 use crate::morphology::{Body, OffsetError, middles};
 use crate::progress::{Progress, Stopped};
 
@@ -90,6 +90,9 @@ pub enum ThickenError {
         /// The longest side of the model's box.
         longest: f64,
     },
+    /// A triangle of the surface refers to a vertex that is not there.
+    #[error(transparent)]
+    Index(#[from] IndexError),
     /// There is neither a solid nor a sheet.
     #[error("there is no triangle with an area")]
     Empty,
@@ -125,6 +128,7 @@ pub fn thicken(
     options: &ThickenOptions,
     progress: &Progress,
 ) -> Result<Changed, ThickenError> {
+    surface.check()?;
     let (min, h) = checked(solid, surface, options)?;
     let given: Vec<&TriMesh> = solid.iter().map(|solid| solid.mesh()).chain([surface]).collect();
     let frame = Frame::of(&given, &options.surface);

@@ -6,7 +6,7 @@ use super::frame::Frame;
 use super::sizing::{self, MAX_RESOLUTION, TYPED};
 use super::{LatticeError, LimitError, Options, plan};
 use crate::ldi::{Expression, THIN};
-use crate::mesh::TriMesh;
+use crate::mesh::{IndexError, TriMesh};
 use crate::progress::{Progress, Stopped};
 use crate::survey::{Cast, Soup, SoupError, Survey};
 
@@ -57,6 +57,9 @@ pub enum ThicknessError {
     /// There is no triangle with an area.
     #[error("there is no triangle with an area")]
     Empty,
+    /// A triangle refers to a vertex that is not there.
+    #[error(transparent)]
+    Index(#[from] IndexError),
     /// The voxel size cannot be used with these coordinates.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
@@ -70,6 +73,7 @@ pub enum ThicknessError {
 /// # Errors
 /// See [`ThicknessError`].
 pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Result<ThicknessReport, ThicknessError> {
+    input.check()?;
     let frame = Frame::of(&[input], &options.surface());
     let mesh = frame.local(input);
     let bounds = sizing::bounds([&*mesh]).map_err(|_| ThicknessError::Empty)?;

@@ -118,7 +118,7 @@ fn sides_keep_their_colours() {
     let mesh = cuboid(DVec3::ZERO, DVec3::ONE, turn(5));
     let colour = |t: usize| [40 * (t / 2) as u8, 200, 10, 255];
     let colours = Colours::Faces((0..12).map(colour).collect());
-    let operand = Operand { mesh: &mesh, colours: Some(&colours), texture: None };
+    let operand = Operand { mesh: &mesh, colours: Some(&colours), texture: None, negative: None };
     let outcome = repair(operand, &at(48), &Progress::none()).expect("a solid");
     let Some(Colours::Faces(carried)) = &outcome.colours else { panic!("no colour for each triangle") };
     for (t, found) in carried.iter().enumerate() {

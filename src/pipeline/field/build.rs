@@ -97,6 +97,11 @@ impl<'a> FieldBuilder<'a> {
     /// # Errors
     /// See [`FieldError`].
     pub fn build(&mut self, tree: &Node<Value>) -> Result<Built, FieldError> {
+        for operand in self.operands {
+            if let FieldOperand::Mesh(operand) = operand {
+                operand.mesh.check()?;
+            }
+        }
         self.parts = self.operands.iter().filter_map(FieldOperand::bounds).reduce(|a, b| a.union(&b));
         let field = self.node(tree)?;
         let operands = self.made.keys().map(|&(operand, made)| OperandReport { operand, made }).collect();

@@ -23,7 +23,7 @@ use crate::field::filter::FilterError;
 use crate::field::{Extent, Field, FillError, FillOptions, LevelError, Shared, fill, level};
 use crate::fit::{Facets, FitReport, fit};
 use crate::ldi::{Evidence, MAX_VOXELS};
-use crate::mesh::{Bounds, NotSolid, SolidError};
+use crate::mesh::{Bounds, IndexError, NotSolid, SolidError};
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::Band;
 
@@ -87,6 +87,9 @@ pub enum FieldError {
     /// The distance to an operand could not be found.
     #[error(transparent)]
     Distance(DistanceError),
+    /// A triangle of an operand refers to a vertex that is not there.
+    #[error(transparent)]
+    Index(#[from] IndexError),
     /// What was made is not a valid solid. The fit sees to it that it is; without one, it may not be.
     #[error(transparent)]
     NotSolid(Box<NotSolid>),
@@ -319,6 +322,7 @@ impl From<SolidError> for FieldError {
     fn from(error: SolidError) -> Self {
         match error {
             SolidError::Stopped(stopped) => Self::Stopped(stopped),
+            SolidError::Index(error) => Self::Index(error),
             SolidError::NotSolid(what) => Self::NotSolid(what),
         }
     }

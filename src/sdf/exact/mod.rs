@@ -9,6 +9,7 @@
 mod cost;
 mod descend;
 mod feature;
+mod of_solid;
 mod point;
 mod quads;
 mod sides;
@@ -21,6 +22,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 pub use cost::{Cost, cost};
+pub use of_solid::SolidDistance;
 pub use point::{ExactDistance, Nearest, PointSign};
 pub use slabs::{Slab, Slabs};
 
