@@ -251,8 +251,11 @@ def main():
     for circle in circles(graph):
         if len(circle) > 1:
             faults.append(f"circle of {len(circle)} files:")
+            # Pairs that take from each other; where there is none, the shortest way around.
+            pairs = [(a, b) for a in circle for b in circle if b in taken[a] and a in taken[b]]
             way = shortest(graph, set(circle))
-            faults.extend(f"  {a.label()} takes {taken[a][b]} from {b.label()}" for a, b in zip(way, way[1:]))
+            steps = sorted(pairs, key=lambda pair: sorted(m.label() for m in pair)) or zip(way, way[1:])
+            faults.extend(f"  {a.label()} takes {taken[a][b]} from {b.label()}" for a, b in steps)
 
     top = lambda module: module if module.parent is root else top(module.parent)  # noqa: E731
     place = {name: number for number, name in enumerate(root.children)}
