@@ -10,7 +10,7 @@ use super::light::shade;
 use super::lines::LinesByBand;
 use super::occlusion::occlusion;
 use super::options::{BAND, Background, Painted, RenderError, RenderOptions, check_size};
-use super::rgb::{Rgb, PixelSample};
+use super::rgb::{PixelSample, Rgb};
 use super::scene::Scene;
 use super::sight::{Sight, sight};
 use crate::mesh::TriMesh;

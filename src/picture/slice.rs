@@ -8,7 +8,7 @@ use super::colour_map::colour;
 use super::digits;
 use super::image::Image;
 use super::options::{BAND, RenderError, check_size};
-use super::rgb::{Rgb, PixelSample};
+use super::rgb::{PixelSample, Rgb};
 use crate::mesh::Bounds;
 use crate::progress::Progress;
 

@@ -140,7 +140,8 @@ impl<'a> Reader<'a, '_> {
     /// Counts a primitive of points or lines.
     fn passed_over(&mut self, primitive: &Primitive<'_>) {
         if primitive.mode() == Some(Mode::Points) && primitive.has(Semantic::Positions) {
-            let count = primitive.attribute(Semantic::Positions).ok().flatten().map_or(0, |positions| positions.count());
+            let count =
+                primitive.attribute(Semantic::Positions).ok().flatten().map_or(0, |positions| positions.count());
             self.points += 1;
             self.soup.points = self.soup.points.saturating_add(count);
         } else {
@@ -148,7 +149,13 @@ impl<'a> Reader<'a, '_> {
         }
     }
 
-    fn primitive(&mut self, primitive: &Primitive<'a>, mode: Mode, place: &DMat4, shared: &mut Shared) -> Result<(), FileError> {
+    fn primitive(
+        &mut self,
+        primitive: &Primitive<'a>,
+        mode: Mode,
+        place: &DMat4,
+        shared: &mut Shared,
+    ) -> Result<(), FileError> {
         let Some(positions) = primitive.attribute(Semantic::Positions)? else {
             self.other_primitives += 1;
             return Ok(());
@@ -189,7 +196,13 @@ impl<'a> Reader<'a, '_> {
     }
 
     /// Colours the triangles from number `start` on, whose vertices are counted from `first`.
-    fn paint(&mut self, primitive: &Primitive<'a>, start: usize, first: u32, shared: &mut Shared) -> Result<(), FileError> {
+    fn paint(
+        &mut self,
+        primitive: &Primitive<'a>,
+        start: usize,
+        first: u32,
+        shared: &mut Shared,
+    ) -> Result<(), FileError> {
         let mut tint = primitive.material()?.map_or_else(Tint::plain, |material| Tint::of(self.document, &material));
         if self.looks.keeps_colours {
             tint = Tint::plain();

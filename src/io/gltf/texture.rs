@@ -12,7 +12,7 @@ use super::super::text::counted;
 use super::super::texture::Gallery;
 use super::accessor;
 use super::buffers::{Buffers, decoded_data, percent_decoded};
-use super::checked::{self, Primitive, ImageSource};
+use super::checked::{self, ImageSource, Primitive};
 use super::material::Tint;
 use crate::io;
 
