@@ -16,7 +16,7 @@ use meshwright::lattice::{BRICK, Grid, Lattice, voxel_in_brick};
 use meshwright::ldi::{Expression, Operands, ldis, spans};
 use meshwright::mesh::{Plane, TriMesh};
 use meshwright::pipeline::{Options, VoxelSize, repair};
-use meshwright::progress::Progress;
+use meshwright::progress::{Progress, Stage};
 use meshwright::sdf::{RobustOptions, Trust, robust};
 use meshwright::vote::{Jury, VoteRule, Winding, WindingTree, vote_near_surface};
 use rayon::prelude::*;
@@ -56,17 +56,17 @@ fn read(path: &Path) -> Result<TriMesh, Box<dyn Error>> {
 fn table_1(name: &str, mesh: &TriMesh) -> Result<(), Box<dyn Error>> {
     let outcome = repair(mesh, &Options::new(VoxelSize::Along(RESOLUTION)), &Progress::none())?;
     let report = outcome.report;
-    let seconds = |stages: &[&str]| -> f64 {
+    let seconds = |stages: &[Stage]| -> f64 {
         report.stages.iter().filter(|s| stages.contains(&s.stage)).map(|s| s.seconds).sum()
     };
     println!(
         "| {name} | {} | {} | {:.3} | {:.3} | {:.3} | {:.3} |",
         mesh.triangles.len(),
         report.ldi.layers,
-        seconds(&["orient", "ldi", "spans"]),
-        seconds(&["vote"]),
-        seconds(&["sdf"]),
-        seconds(&["contour", "collapse"]),
+        seconds(&[Stage::Orient, Stage::Ldi, Stage::Spans]),
+        seconds(&[Stage::Vote]),
+        seconds(&[Stage::Sdf]),
+        seconds(&[Stage::Contour, Stage::Collapse]),
     );
     Ok(())
 }

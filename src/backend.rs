@@ -11,6 +11,7 @@ use crate::sdf::exact::{ExactError, ExactOptions};
 
 /// Which processor makes the layered depth images, the same to the last bit, or the field of prisms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Backend {
     /// The graphics processor where there is a real one and the job is large enough to pay, else the main one.
@@ -24,6 +25,7 @@ pub enum Backend {
 
 /// Who made the layered depth images, or the field.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BackendReport {
     /// Never [`Backend::Auto`], except where nothing was made.
     pub backend: Backend,

@@ -4,6 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use serde::Serialize;
+
 /// Why a stage stopped before its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Stopped {
@@ -15,16 +17,89 @@ pub enum Stopped {
     Deadline,
 }
 
+/// The stages of all runs: what a listener hears of, and what reports have times of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum Stage {
+    /// Files are read.
+    Read,
+    /// The defects of the input are counted.
+    Examine,
+    /// Patches are turned so that they agree.
+    Orient,
+    /// Closed surfaces that touch nothing are set apart.
+    Shells,
+    /// Rays are cast through the model.
+    Ldi,
+    /// The rays' pieces inside the solid are found.
+    Spans,
+    /// The rays vote on what is inside.
+    Vote,
+    /// Distances near the surface are smoothed.
+    Sdf,
+    /// The surface is made from the distances.
+    Contour,
+    /// Small triangles are merged.
+    Collapse,
+    /// Edges and corners are fitted, and triangles saved.
+    Fit,
+    /// The surface is moved.
+    Offset,
+    /// The surface is moved, to be moved back later.
+    #[serde(rename = "first offset")]
+    FirstOffset,
+    /// The surface is moved back.
+    #[serde(rename = "second offset")]
+    SecondOffset,
+    /// Walls that are too thin are looked for.
+    #[serde(rename = "thin walls")]
+    ThinWalls,
+    /// Canals are looked for.
+    Canals,
+    /// Distances are measured over a lattice.
+    Distance,
+    /// Outlines are closed, plane by plane.
+    Levels,
+    /// An expression is worked out.
+    Field,
+    /// Two meshes are compared.
+    Compare,
+    /// A map of the surface is coloured.
+    Map,
+    /// A picture is drawn.
+    Draw,
+    /// A file is written.
+    Write,
+    /// The written file is read and checked.
+    Verify,
+    /// Both, where the time of both is told as one.
+    #[serde(rename = "write and verify")]
+    WriteAndVerify,
+    /// Walls and gaps are measured.
+    Thickness,
+    /// A cavity is made.
+    Hollow,
+    /// What is drilled is cut out.
+    Subtract,
+    /// Triangles are taken away.
+    Decimate,
+    /// Bodies are taken apart.
+    Split,
+    /// Graphics adapters are looked for.
+    List,
+}
+
 /// What a listener hears.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Event<'a> {
-    /// A stage begins; the name is one word of the drawing in the crate's documentation.
-    Stage(&'a str),
+pub enum Event {
+    /// A stage begins.
+    Stage(Stage),
     /// The share of the current stage that is done, 0 to 1.
     Share(f32),
 }
 
-type Listener = Arc<dyn Fn(Event<'_>) + Send + Sync>;
+type Listener = Arc<dyn Fn(Event) + Send + Sync>;
 
 /// Progress and cancellation. Cheap to clone; clones share the same flag and listener.
 #[derive(Clone, Default)]
@@ -41,7 +116,7 @@ impl Progress {
     }
 
     /// Calls `listener` at the start of each stage and now and then within it, from any thread.
-    pub fn with_listener(mut self, listener: impl Fn(Event<'_>) + Send + Sync + 'static) -> Self {
+    pub fn with_listener(mut self, listener: impl Fn(Event) + Send + Sync + 'static) -> Self {
         self.listener = Some(Arc::new(listener));
         self
     }
@@ -59,8 +134,8 @@ impl Progress {
     }
 
     /// Announces a stage and checks for cancellation.
-    pub fn stage(&self, name: &str) -> Result<(), Stopped> {
-        self.tell(Event::Stage(name));
+    pub fn stage(&self, stage: Stage) -> Result<(), Stopped> {
+        self.tell(Event::Stage(stage));
         self.check()
     }
 
@@ -80,7 +155,7 @@ impl Progress {
         }
     }
 
-    fn tell(&self, event: Event<'_>) {
+    fn tell(&self, event: Event) {
         if let Some(listener) = &self.listener {
             listener(event);
         }

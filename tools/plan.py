@@ -98,10 +98,10 @@ def measure(program, way, words, count, mesh, resolution, folder, limit):
     command = [words[0], *inputs, *words[1:], "--resolution", str(resolution)]
     planned = run(program, [*command, "--plan"], limit)
     done = run(program, [*command, *output], limit)
-    if not planned or not done or not planned.get("plan") or done["exit"] not in (0, 3) or "error" in done:
+    if not planned or not done or not planned.get("result") or done["exit"] not in (0, 3) or "error" in done:
         return None
     row = {"way": way, "file": mesh.name, "resolution": resolution}
-    row |= {"plan": planned["plan"]["memory"], "peak": done["peak_memory_bytes"], "report": done}
+    row |= {"plan": planned["result"]["plan"]["memory"], "peak": done["peak_memory_bytes"], "report": done}
     row["over"] = row["plan"] / row["peak"]
     return row
 

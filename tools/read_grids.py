@@ -145,7 +145,7 @@ def check_ours(folder, report):
     import nrrd
     import numpy as np
 
-    distance = report["distance"]
+    distance = report["result"]["distance"]
     origin, spacing, dims, band = (distance[key] for key in ("origin", "voxel", "dims", "band"))
     values = np.load(folder / "f.npy")
     assert values.shape == tuple(dims) and values.dtype == np.float32 and values.flags["F_CONTIGUOUS"]
@@ -198,7 +198,7 @@ def check_theirs(program, folder, values, origin, spacing, band):
         place = ["--slice", "z=50%", "--width", "240", "--height", "200"]
         command = [program, "render", path, "-o", out, "-q", "--json", *place]
         report = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
-        ranges[path.name] = report["slices"][0]["range"]
+        ranges[path.name] = report["result"]["slices"][0]["range"]
         return out.read_bytes()
 
     paths = list(vtk_write(values, origin, spacing, folder)) + list(nrrd_write(values, origin, spacing, folder))

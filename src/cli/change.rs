@@ -4,12 +4,12 @@ use std::str::FromStr;
 
 use serde_json::json;
 
-use super::args::CommonArgs;
+use super::drain::DrainChoice;
 use super::exit::Failure;
-use super::hollow::DrainChoice;
 use super::length::{Length, Scale};
 use super::report::RunReport;
 use super::session::Session;
+use super::shared_args::CommonArgs;
 use super::words::{self, UnitName};
 use crate::mesh::TriMesh;
 use crate::morphology::{Canal, Operation};
@@ -264,9 +264,9 @@ pub fn list(
     common: &CommonArgs,
     unit: UnitName<'_>,
 ) -> Result<(), Failure> {
-    let canals = report.pipeline.as_ref().and_then(|pipeline| pipeline.canals.as_ref());
+    let canals = report.pipeline().and_then(|pipeline| pipeline.canals.as_ref());
     match canals.filter(|_| !common.json && change.is_some_and(|change| !change.makes_a_mesh())) {
-        Some(canals) => super::output::write_stream(canal_table(canals, unit).as_bytes()),
+        Some(canals) => super::streams::write_stream(canal_table(canals, unit).as_bytes()),
         None => Ok(()),
     }
 }

@@ -1,20 +1,55 @@
 //! `compare A B`: how far two meshes are from each other.
 
+use clap::Args;
 use std::path::Path;
+use std::path::PathBuf;
 
 use serde_json::json;
 
-use super::args::CompareArgs;
+use super::entries::OutputEntry;
 use super::exit::{Exit, Failure};
-use super::input::{self, Input, is_stream};
+use super::input::{self, Input};
 use super::length::{Length, Scale};
-use super::output;
-use super::report::{OutputEntry, RunReport};
+use super::report::RunReport;
+use super::result::RunResult;
 use super::session::Session;
-use super::summary::{self, Row};
+use super::shared_args::{CommonArgs, InputArgs};
+use super::streams::{self, is_stream};
+use super::table::{self, Row};
 use super::words::{self, UnitName};
+use super::{output, side, target};
 use crate::compare::{CompareOptions, Comparison, Relative, compare, deviation_map};
 use crate::io::{self, Format, LegendEntry, Unit, VertexMap};
+use crate::progress::Stage;
+
+/// `compare A B`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// The reference
+    #[arg(value_name = "A")]
+    pub a: PathBuf,
+    /// The mesh that is judged
+    #[arg(value_name = "B")]
+    pub b: PathBuf,
+    /// Write B, coloured by its signed distance from A, to this file
+    #[arg(long, value_name = "FILE.ply")]
+    pub map: Option<PathBuf>,
+    /// Points on each mesh at which distances are taken, besides all vertices
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+    pub samples: u32,
+    /// How near a sharp edge of the other mesh must be to count as found [default: 1/1024 of A's longest side]
+    #[arg(long, value_name = "LEN")]
+    pub tolerance: Option<Length>,
+    /// Exit with 3 when a point of one mesh is farther than this from the other
+    #[arg(long, value_name = "LEN")]
+    pub fail_on_max: Option<Length>,
+    /// How the inputs are read.
+    #[command(flatten)]
+    pub reading: InputArgs,
+    /// Flags of every verb.
+    #[command(flatten)]
+    pub common: CommonArgs,
+}
 
 /// Measures two files against each other and prints a table.
 pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
@@ -23,7 +58,7 @@ pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Res
         check_map(map)?;
     }
     let mut inputs =
-        report.timed("read", |report| input::read_all(&paths, &args.reading, session, &mut report.warnings))?;
+        report.timed(Stage::Read, |report| input::read_all(&paths, &args.reading, session, &mut report.warnings))?;
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     let [a, b] = inputs.as_slice() else { return Err(Failure::internal("two meshes were wanted")) };
@@ -33,21 +68,23 @@ pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Res
         "samples": args.samples, "tolerance": limits.tolerance, "fail_on_max": limits.largest,
     });
     let options = CompareOptions { samples: args.samples as usize, edge_tolerance: limits.tolerance };
-    let found = report.timed("compare", |_| compare(&a.loaded.mesh, &b.loaded.mesh, &options, &session.progress))?;
-    report.comparison = Some(found.clone());
+    let found =
+        report.timed(Stage::Compare, |_| compare(&a.loaded.mesh, &b.loaded.mesh, &options, &session.progress))?;
+    report.result = Some(RunResult::Comparison { comparison: found.clone(), output: None });
     for (input, measures) in [(a, &found.a), (b, &found.b)] {
         if measures.area <= 0.0 {
             return Err(Failure::input(format!("{}: no triangle has an area", input.label)));
         }
     }
     if let Some(path) = &args.map {
-        report.output = Some(report.timed("map", |_| write_map(path, a, b, unit, session))?);
+        let written = report.timed(Stage::Map, |_| write_map(path, a, b, unit, session))?;
+        report.written(written);
     }
     session.clear_bar();
     let name = unit.map(|unit| unit.to_string());
     if !args.common.json {
-        let text = summary::table(&rows(&found, [&a.label, &b.label], name.as_deref()));
-        output::write_stream(text.as_bytes())?;
+        let text = table::table(&rows(&found, [&a.label, &b.label], name.as_deref()));
+        streams::write_stream(text.as_bytes())?;
     }
     match (limits.largest, found.symmetric) {
         (Some(limit), Some(distance)) if distance.max > limit => Err(Failure::new(
@@ -87,7 +124,7 @@ pub(super) fn check_map(map: &Path) -> Result<(), Failure> {
     if is_stream(map) {
         return Err(Failure::usage("--map wants a file"));
     }
-    output::check_extension(map, Format::Ply.name())
+    target::check_extension(map, Format::Ply.name())
 }
 
 /// Writes B with its signed distances from A.
@@ -114,12 +151,12 @@ fn write_map(path: &Path, a: &Input, b: &Input, unit: Option<Unit>, session: &Se
     let attributes = VertexMap { quality: &quality, colours: &map.colours(), comments: &comments };
     let mut bytes = Vec::new();
     io::encode_vertex_map(mesh, &attributes, &mut bytes).map_err(|error| output::unencoded(path, &error))?;
-    output::write_side(path, &bytes, session)?;
+    side::write_side(path, &bytes, session)?;
     Ok(OutputEntry {
         path: path.display().to_string(),
         format: Format::Ply.to_string(),
         bytes: bytes.len() as u64,
-        sha256: input::sha256(&bytes),
+        sha256: streams::sha256(&bytes),
         unit: unit.map(|unit| unit.to_string()),
         validity: None,
     })

@@ -2,30 +2,35 @@
 
 use serde_json::json;
 
-use super::args::ConvertArgs;
 use super::choices::AnyFormat;
+use super::convert_args::ConvertArgs;
+use super::entries::OutputEntry;
 use super::exit::{Exit, Failure};
 use super::given::Given;
-use super::input;
-use super::output::{Target, write_verified};
+use super::keep::{self};
+use super::output::write_verified;
 use super::paint::{self, Arranged};
-use super::report::{OutputEntry, RunReport};
+use super::report::RunReport;
+use super::result::RunResult;
 use super::session::Session;
-use super::{grids, keep, transform, words};
+use super::target::Target;
+use super::transform::{self};
+use super::{grids, streams, words};
 use crate::io::{Loaded, Paint};
 use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
+use crate::progress::Stage;
 
 /// Reads one file and writes it again, scaled, turned and moved if that was asked for.
 pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let mut given = report
-        .timed("read", |report| Given::read(&[&args.input], &args.reading, None, session, &mut report.warnings))?;
+        .timed(Stage::Read, |report| Given::read(&[&args.input], &args.reading, None, session, &mut report.warnings))?;
     let unit = given.common_unit(&args.reading, &mut report.warnings);
     if !given.grids.is_empty() {
         return grids::convert(args, &given, unit, session, report);
     }
     let mut inputs = given.meshes;
     if let (None, Some(AnyFormat::Grid(_))) = (args.writing.out_format, AnyFormat::from_path(&args.output)) {
-        return Err(grids::no_field(&input::label(&args.input), &args.output));
+        return Err(grids::no_field(&streams::label(&args.input), &args.output));
     }
     let mut target = Target::new(&args.output, &args.writing)?;
     target.set_unit(unit);
@@ -50,7 +55,7 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     report.warnings.extend(target.unit_note());
     let placed = if done.is_some() { state(mesh, session)? } else { before.clone() };
     let arranged = Arranged::new(mesh, &paint, target.options.format);
-    let (entry, after) = report.timed("write and verify", |_| {
+    let (entry, after) = report.timed(Stage::WriteAndVerify, |_| {
         write_verified(&target, &arranged.mesh, arranged.paint(), session, |read| {
             check_close(read, &arranged.mesh, target.options.factor())?;
             paint::check_colours(read, &arranged.mesh, &arranged.paint())?;
@@ -68,7 +73,7 @@ pub fn run(args: &ConvertArgs, session: &Session, report: &mut RunReport) -> Res
     })?;
     let triangles = after.triangles;
     report.inputs[0].validity = Some(before);
-    report.output = Some(OutputEntry { validity: Some(after.clone()), ..entry });
+    report.result = Some(RunResult::Conversion { output: OutputEntry { validity: Some(after.clone()), ..entry } });
     let lost = losses(&placed, &after);
     report.warnings.extend(lost.iter().cloned());
     session.clear_bar();

@@ -1,21 +1,46 @@
 //! `csg EXPR NAME=FILE... -o OUT`.
 
-use std::fmt;
+use clap::Args;
 use std::path::Path;
 
-use super::args::CsgArgs;
-use super::csg_parser::{self, ExpressionError};
 use super::exit::{Exit, Failure};
 use super::report::RunReport;
 use super::session::Session;
 use super::solid::{self, Job};
-use crate::field::language::LanguageError;
+use super::solid_args::SolidArgs;
+use crate::field::language::{self, LanguageError};
+
+/// What `csg --help` ends with.
+pub const CSG_HELP: &str = "\
+Operators, from the one that binds tightest, grouping from the left as in Python:
+  a - b   inside a and not inside b
+  a & b   inside both
+  a ^ b   inside exactly one
+  a | b   inside at least one
+Parentheses group. A name is letters, digits and _, and begins with no digit.
+
+Example:
+  meshwright csg 'a - (b | c)' a=block.stl b=hole.obj c=slot.ply -o part.3mf";
+
+/// `csg EXPR NAME=FILE... -o OUT`.
+#[derive(Debug, Args)]
+pub struct CsgArgs {
+    /// The expression over the names
+    #[arg(value_name = "EXPR")]
+    pub expression: String,
+    /// A mesh and the name it goes by in the expression
+    #[arg(value_name = "NAME=FILE", required = true)]
+    pub operands: Vec<String>,
+    /// Flags of the pipeline and its output.
+    #[command(flatten)]
+    pub solid: SolidArgs,
+}
 
 /// Evaluates the expression over the named files.
 pub fn run(args: &CsgArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let operands = named_files(&args.operands)?;
     let names: Vec<&str> = operands.iter().map(|(name, _)| *name).collect();
-    let expression = csg_parser::parse(&args.expression, &names).map_err(|e| explain(&args.expression, &names, &e))?;
+    let expression = language::parse_boolean(&args.expression, &names).map_err(|e| explain(&args.expression, &e))?;
     let job = Job {
         change: None,
         paths: operands.iter().map(|(_, path)| *path).collect(),
@@ -38,7 +63,7 @@ pub(super) fn named_files(operands: &[String]) -> Result<Vec<(&str, &Path)>, Fai
         let (name, path) = operand.split_once('=').filter(|(_, path)| !path.is_empty()).ok_or_else(|| {
             Failure::usage(format!("`{operand}` is not NAME=FILE")).hint(format!("for example a={operand}"))
         })?;
-        if !csg_parser::is_name(name) {
+        if !language::is_name(name) {
             return Err(Failure::usage(format!("`{name}` in `{operand}` is not a name"))
                 .hint("letters, digits and _, and no digit first"));
         }
@@ -50,40 +75,8 @@ pub(super) fn named_files(operands: &[String]) -> Result<Vec<(&str, &Path)>, Fai
     Ok(files)
 }
 
-/// An error in a text, which may know its place.
-pub(super) trait Placed: fmt::Display {
-    /// Bytes from the start of the text.
-    fn position(&self) -> Option<usize>;
-    /// Something to try; `names` are those that files were given for.
-    fn hint(&self, names: &[&str]) -> Option<String>;
-}
-
-impl Placed for ExpressionError {
-    fn position(&self) -> Option<usize> {
-        self.position()
-    }
-
-    fn hint(&self, names: &[&str]) -> Option<String> {
-        match self {
-            Self::UnknownName { .. } => Some(format!("the names given are {}", names.join(", "))),
-            Self::UnusedNames { .. } => Some("use them, or leave their files away".into()),
-            _ => None,
-        }
-    }
-}
-
-impl Placed for LanguageError {
-    fn position(&self) -> Option<usize> {
-        self.position()
-    }
-
-    fn hint(&self, _names: &[&str]) -> Option<String> {
-        self.hint()
-    }
-}
-
 /// The error with a caret below its place, and what could have been written.
-pub(super) fn explain(text: &str, names: &[&str], error: &impl Placed) -> Failure {
+pub(super) fn explain(text: &str, error: &LanguageError) -> Failure {
     let failure = match error.position() {
         Some(at) => {
             let column = text[..at].chars().count();
@@ -94,7 +87,7 @@ pub(super) fn explain(text: &str, names: &[&str], error: &impl Placed) -> Failur
         }
         None => Failure::usage(error.to_string()),
     };
-    match error.hint(names) {
+    match error.hint() {
         Some(hint) => failure.hint(hint),
         None => failure,
     }
@@ -103,7 +96,6 @@ pub(super) fn explain(text: &str, names: &[&str], error: &impl Placed) -> Failur
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::field::language;
 
     #[test]
     fn operands_need_a_name_and_a_file() {
@@ -120,16 +112,16 @@ mod tests {
 
     #[test]
     fn the_caret_stands_below_the_place() {
-        let error = csg_parser::parse("a - ü", &["a"]).unwrap_err();
-        let failure = explain("a - ü", &["a"], &error);
-        assert_eq!(failure.message, "column 5 of the expression: expected a name or `(`, found `ü`");
+        let error = language::parse_boolean("a - ü", &["a"]).unwrap_err();
+        let failure = explain("a - ü", &error);
+        assert_eq!(failure.message, "column 5 of the expression: expected a name, a function or `(`, found `ü`");
         assert_eq!(failure.place.as_deref(), Some("  a - ü\n      ^"));
     }
 
     #[test]
     fn errors_of_fields_are_shown_alike() {
         let error = language::parse("a | ofset(b, 1mm)", &["a", "b"]).unwrap_err();
-        let failure = explain("a | ofset(b, 1mm)", &["a", "b"], &error);
+        let failure = explain("a | ofset(b, 1mm)", &error);
         assert_eq!(failure.message, "column 5 of the expression: there is no function `ofset`");
         assert_eq!(failure.place.as_deref(), Some("  a | ofset(b, 1mm)\n      ^"));
         assert_eq!(failure.hint.as_deref(), Some("did you mean `offset`?"));

@@ -5,22 +5,25 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use super::args::{CommonArgs, InputArgs, OutputArgs};
+use super::epilogue;
 use super::exit::{Exit, Failure};
 use super::input::{self, Input};
 use super::length::{Length, Scale};
-use super::output::Target;
 use super::report::RunReport;
+use super::result::RunResult;
 use super::session::Session;
-use super::summary::{self, Row};
+use super::shared_args::{CommonArgs, InputArgs, OutputArgs};
+use super::table::Row;
+use super::target::Target;
 use super::words::{self, UnitName};
-use super::{machine, solid};
-use crate::compare::{CompareOptions, compare};
-use crate::decimate::{DecimateError, DecimateOptions, Decimated, decimate};
+use super::{solid, summary};
+use crate::compare::{CompareOptions, Comparison, compare};
+use crate::decimate::{DecimateError, DecimateOptions, DecimateReport, Decimated, decimate};
 use crate::fit::rounded;
 use crate::io::{Format, Paint, Unit};
 use crate::mesh::{Bounds, TriMesh};
 use crate::pipeline;
+use crate::progress::Stage;
 
 /// Samples by which the distance that the surface has moved is told.
 const SAMPLES: usize = 4_000;
@@ -67,8 +70,8 @@ fn parse_ratio(text: &str) -> Result<f64, String> {
 /// Decimates one file.
 pub fn run(args: &DecimateArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let mut target = Target::new(&args.output, &args.writing)?;
-    let mut inputs =
-        report.timed("read", |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
+    let mut inputs = report
+        .timed(Stage::Read, |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     target.set_unit(unit);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
@@ -82,16 +85,15 @@ pub fn run(args: &DecimateArgs, session: &Session, report: &mut RunReport) -> Re
         "single": options.single,
         "threads": rayon::current_num_threads(),
     });
-    let made = report.timed("decimate", |_| {
-        session.progress.stage("decimate")?;
+    let made = report.timed(Stage::Decimate, |_| {
+        session.progress.stage(Stage::Decimate)?;
         Ok::<_, Failure>(decimate(&input.loaded.mesh, &options, &session.progress))
     })?;
     let Decimated { mesh, origins, before, report: done } = made.map_err(|error| failure(error, &input, moved))?;
     report.inputs[0].validity = Some(before);
-    report.decimate = Some(done.clone());
     let colours = input.loaded.colours.as_ref();
     let colours = colours.map(|colours| pipeline::carry_to_simpler(&mesh, &origins, &input.loaded.mesh, colours));
-    report.comparison = report.timed("compare", |_| {
+    let comparison = report.timed(Stage::Compare, |_| {
         let options = CompareOptions { samples: SAMPLES, edge_tolerance: None };
         compare(&input.loaded.mesh, &mesh, &options, &session.progress).map(Some)
     })?;
@@ -99,7 +101,10 @@ pub fn run(args: &DecimateArgs, session: &Session, report: &mut RunReport) -> Re
     let texture =
         texture.and_then(|texture| pipeline::carry_texture_to_simpler(&mesh, &origins, &input.loaded.mesh, texture));
     let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
-    solid::write(&mesh, paint, &target, session, report)?;
+    report.result =
+        Some(RunResult::Decimation { decimate: done.clone(), comparison: comparison.clone(), output: None });
+    let written = solid::write(&mesh, paint, &target, session, report)?;
+    report.written(written);
     let missed = !done.reached && options.max_deviation.is_none();
     if !done.reached {
         report.warnings.push(match options.max_deviation {
@@ -107,10 +112,8 @@ pub fn run(args: &DecimateArgs, session: &Session, report: &mut RunReport) -> Re
             Some(_) => "the deviation ended it before the number of triangles was reached".into(),
         });
     }
-    report.seconds = session.start.elapsed().as_secs_f64();
-    report.peak_memory_bytes = machine::peak_memory();
-    session.clear_bar();
-    say(session, report, unit.map(|unit| unit.to_string()).as_deref());
+    epilogue::measured(session, report, None);
+    say(session, report, (&done, comparison.as_ref()), unit.map(|unit| unit.to_string()).as_deref());
     Ok(if missed { Exit::Limit } else { Exit::Done })
 }
 
@@ -171,22 +174,21 @@ fn failure(error: DecimateError, input: &Input, moved: f64) -> Failure {
     })
 }
 
-fn say(session: &Session, report: &RunReport, unit: UnitName<'_>) {
+fn say(
+    session: &Session,
+    report: &RunReport,
+    (done, comparison): (&DecimateReport, Option<&Comparison>),
+    unit: UnitName<'_>,
+) {
     let mut rows: Vec<Row> = summary::input_rows(report);
-    if let Some(done) = &report.decimate {
-        let (before, after) = (words::plural(done.before, "triangle"), words::count(done.after));
-        rows.push(("done", format!("{before} became {after} ({})", words::percent(done.after, done.before))));
-    }
-    let found = report.comparison.as_ref().and_then(|found| Some((found.symmetric.as_ref()?, found.diagonal)));
+    let (before, after) = (words::plural(done.before, "triangle"), words::count(done.after));
+    rows.push(("done", format!("{before} became {after} ({})", words::percent(done.after, done.before))));
+    let found = comparison.and_then(|found| Some((found.symmetric.as_ref()?, found.diagonal)));
     if let Some((found, diagonal)) = found {
         let (mean, most) = (words::length(found.mean, unit), words::length(found.max, unit));
         let share = words::number(100.0 * found.max / diagonal);
         rows.push(("moved", format!("by {mean} in the mean, at most {most} ({share} % of the diagonal)")));
     }
     rows.extend(summary::result_rows(report, unit));
-    rows.push(summary::time(report));
-    if session.verbose {
-        rows.extend(summary::stages(report));
-    }
-    session.say(summary::table(&rows).trim_end());
+    epilogue::say(session, report, rows);
 }

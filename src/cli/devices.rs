@@ -1,11 +1,11 @@
 //! `devices`: the graphics adapters of this machine.
 
-use clap::Args;
-use serde::Serialize;
-
-use super::args::CommonArgs;
 use super::exit::{Exit, Failure};
 use super::report::RunReport;
+use super::result::RunResult;
+use super::shared_args::CommonArgs;
+use crate::progress::Stage;
+use clap::Args;
 
 /// `devices`.
 #[derive(Debug, Args)]
@@ -15,33 +15,14 @@ pub struct DevicesArgs {
     pub common: CommonArgs,
 }
 
-/// The adapters, and which ones would be taken.
-#[derive(Debug, Default, Serialize)]
-pub struct DeviceReport {
-    /// Whether the program was built with the feature `gpu`.
-    pub built: bool,
-    /// The adapters.
-    #[cfg(feature = "gpu")]
-    pub adapters: Vec<crate::gpu::AdapterEntry>,
-    /// The adapters: a build without the feature `gpu` finds none.
-    #[cfg(not(feature = "gpu"))]
-    pub adapters: [(); 0],
-    /// Name of the one that `--backend auto` takes for large jobs.
-    pub auto: Option<String>,
-    /// Name of the one that `--backend gpu` takes.
-    pub gpu: Option<String>,
-    /// Why, in a sentence.
-    pub why: String,
-}
-
 /// Lists the adapters.
 pub fn run(args: &DevicesArgs, report: &mut RunReport) -> Result<Exit, Failure> {
     report.options = serde_json::json!({});
-    let found = report.timed("list", |_| find());
+    let found = report.timed(Stage::List, |_| find());
     if !args.common.json {
-        super::output::write_stream(text(&found).as_bytes())?;
+        super::streams::write_stream(text(&found).as_bytes())?;
     }
-    report.devices = Some(found);
+    report.result = Some(RunResult::Devices { devices: found });
     Ok(Exit::Done)
 }
 
@@ -60,8 +41,8 @@ pub use with_gpu::*;
 
 #[cfg(feature = "gpu")]
 mod with_gpu {
-    use super::DeviceReport;
-    use crate::cli::summary::{self, Row};
+    use crate::cli::entries::DeviceReport;
+    use crate::cli::table::{self, Row};
     use crate::cli::words;
     use crate::gpu::{AdapterEntry, AdapterKind, INSTALL, Wanted, adapters};
 
@@ -86,7 +67,7 @@ mod with_gpu {
         }
         let mut text = String::new();
         for adapter in &found.adapters {
-            text.push_str(&summary::table(&rows(adapter)));
+            text.push_str(&table::table(&rows(adapter)));
             text.push('\n');
         }
         let or_cpu = |name: &Option<String>| name.clone().unwrap_or_else(|| "the main processor".into());
@@ -94,7 +75,7 @@ mod with_gpu {
             ("--backend auto", format!("{}: {}", or_cpu(&found.auto), found.why)),
             ("--backend gpu", found.gpu.clone().unwrap_or_else(|| "none".into())),
         ];
-        text.push_str(&summary::table(&choices));
+        text.push_str(&table::table(&choices));
         text
     }
 

@@ -1,7 +1,7 @@
 //! What a lattice may have harmed, in words: bodies that changed, and walls and gaps that it does not hold.
 
 use super::report::RunReport;
-use super::summary::Row;
+use super::table::Row;
 use super::words::{self, UnitName};
 use crate::pipeline::{LostBody, Report, ThinRegion, Topology, TopologyReport};
 
@@ -80,7 +80,7 @@ fn thin_places(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
 
 /// What may do better than a result that is mostly lost; nothing that cannot be.
 pub fn better(report: &RunReport, unit: UnitName<'_>) -> String {
-    let pipeline = report.pipeline.as_ref();
+    let pipeline = report.pipeline();
     let finer = pipeline.and_then(|p| p.thin.voxel_that_keeps.filter(|keeps| *keeps < p.voxel));
     match finer {
         Some(voxel) => {

@@ -1,6 +1,6 @@
 //! What is not in the result because it is too small, in words.
 
-use super::summary::Row;
+use super::table::Row;
 use super::words::{self, UnitName};
 use crate::pipeline::{Dropped, MorphologyReport, Report};
 

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use super::exit::{Exit, Failure};
 use super::machine;
-use super::session::print_failure;
+use super::say::print_failure;
 use crate::io::draft::Draft;
 use crate::progress::Stopped;
 
@@ -76,7 +76,7 @@ impl Ending {
         };
         match ctrlc::set_handler(heard) {
             Ok(()) => Ok(ending),
-            Err(ctrlc::Error::System(error)) => Err(machine::no_threads(super::input::plain_reason(&error))),
+            Err(ctrlc::Error::System(error)) => Err(machine::no_threads(super::streams::plain_reason(&error))),
             Err(error) => Err(Failure::internal(format!("cannot listen for Ctrl-C: {error}"))),
         }
     }
@@ -134,5 +134,5 @@ fn speak(words: &Receiver<Words>) {
 
 fn start(name: &str, work: impl FnOnce() + Send + 'static) -> Result<(), Failure> {
     let started = Builder::new().name(name.to_owned()).spawn(work);
-    started.map(drop).map_err(|error| machine::no_threads(super::input::plain_reason(&error)))
+    started.map(drop).map_err(|error| machine::no_threads(super::streams::plain_reason(&error)))
 }

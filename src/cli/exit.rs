@@ -12,6 +12,7 @@ use crate::progress::Stopped;
 
 /// The exit status of the process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum Exit {
     /// Done, and verified on the written file.
@@ -62,6 +63,7 @@ pub struct Asked {
 
 /// Why a run ended without its result: a sentence, perhaps something to try, and the exit status.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Failure {
     /// The exit status.
     #[serde(skip)]

@@ -1,24 +1,24 @@
 //! `field EXPR NAME=FILE... -o OUT`: shapes and lattices of values by an expression.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::json;
 
-use super::choices::AnyFormat;
 use super::csg::{explain, named_files};
+use super::epilogue;
 use super::exit::{Asked, Exit, Failure};
 use super::field_args::FieldArgs;
-use super::files::Made;
+use super::field_places::{Place, targets};
 use super::given::{Given, Which};
-use super::input::{self, is_stream};
 use super::length::{BandChoice, Length, Scale, Simplify};
-use super::output::Target;
 use super::report::RunReport;
+use super::result::{FrameEntry, RunResult};
 use super::session::Session;
-use super::summary::{self, Row};
+use super::table::Row;
+use super::target::Target;
 use super::words::{self, UnitName};
-use super::{dropped, limits, machine, output, sdf, solid};
+use super::{dropped, input, machine, sdf, solid, summary};
 use crate::field::Sampled;
 use crate::field::language::{self, LanguageError, Node, Value};
 use crate::fit::FitOptions;
@@ -29,6 +29,7 @@ use crate::pipeline::{
     self, Built, FieldBand, FieldBuilder, FieldError, FieldOperand, FieldReport, LimitError, Operand, Options, Outcome,
     Precision, VoxelSize,
 };
+use crate::progress::Stage;
 
 /// Values in a lattice reach so far from the surface, voxels, unless it is said otherwise.
 const USUAL_BAND: f64 = 4.0;
@@ -40,15 +41,16 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     let paths: Vec<&Path> = files.iter().map(|(_, path)| *path).collect();
     let targets = targets(args)?;
     session.expect_frames(targets.len());
-    let mut given = report
-        .timed("read", |report| Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings))?;
+    let mut given = report.timed(Stage::Read, |report| {
+        Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings)
+    })?;
     let unit = given.common_unit(&args.reading, &mut report.warnings);
     given.describe(report);
     for (entry, (name, _)) in report.inputs.iter_mut().zip(&files) {
         entry.name = Some(name.to_string());
     }
-    report.timed("examine", |report| {
-        session.progress.stage("examine")?;
+    report.timed(Stage::Examine, |report| {
+        session.progress.stage(Stage::Examine)?;
         for (which, entry) in given.order.iter().zip(&mut report.inputs) {
             if let Which::Mesh(n) = *which {
                 entry.validity = Some(input::examine(&given.meshes[n].loaded, session)?);
@@ -76,13 +78,9 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
     for (number, target) in targets.iter().enumerate() {
         run.frame(number, targets.len(), target, report)?;
     }
-    let broken = limits::beyond_memory(report, args.max_memory);
-    report.warnings.extend(broken.iter().cloned());
-    report.seconds = session.start.elapsed().as_secs_f64();
-    report.peak_memory_bytes = super::machine::peak_memory();
-    session.clear_bar();
+    let exit = epilogue::measured(session, report, args.max_memory);
     say(session, report, targets.len(), unit);
-    Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
+    Ok(exit)
 }
 
 /// The lattices of the expression, in one unit, by the numbers of the grids: the values of the files go over to them.
@@ -126,7 +124,7 @@ impl<'a> Texts<'a> {
         let names: Vec<&str> = files.iter().map(|(name, _)| *name).collect();
         let one = |text: &'a str| match language::parse_some(text, &names) {
             Ok(node) => Ok((text, node)),
-            Err(error) => Err(explain(text, &names, &error)),
+            Err(error) => Err(explain(text, &error)),
         };
         let (field, paint) = (one(&args.expression)?, args.paint.as_deref().map(one).transpose()?);
         let texts = Self { names, field, paint };
@@ -135,10 +133,10 @@ impl<'a> Texts<'a> {
         let unused = texts.names.iter().enumerate().filter(|(n, _)| !used.contains(n));
         let unused: Vec<String> = unused.map(|(_, name)| name.to_string()).collect();
         if !unused.is_empty() {
-            return Err(explain(&args.expression, &texts.names, &LanguageError::UnusedNames { names: unused }));
+            return Err(explain(&args.expression, &LanguageError::UnusedNames { names: unused }));
         }
         match (texts.frame(), args.frames) {
-            (Some((text, at)), None) => Err(explain(text, &texts.names, &LanguageError::NoFrame { at })),
+            (Some((text, at)), None) => Err(explain(text, &LanguageError::NoFrame { at })),
             (None, Some(_)) => {
                 let failure = Failure::usage("--frames makes a sequence, and the expression has no `t` that changes");
                 Err(failure.hint("for example 'morph(a, b, t)'"))
@@ -154,100 +152,22 @@ impl<'a> Texts<'a> {
     }
 }
 
-/// Where one result goes.
-enum Place {
-    Mesh(Target),
-    Grid(PathBuf, GridFormat),
-}
-
-impl Place {
-    fn path(&self) -> &Path {
-        match self {
-            Self::Mesh(target) => &target.path,
-            Self::Grid(path, _) => path,
-        }
-    }
-}
-
-/// The files that will be made.
-pub(super) fn made(args: &FieldArgs) -> Vec<Made> {
-    let frames = args.frames.unwrap_or(1);
-    let made = |number| Made { flag: "-o", path: frame_path(args, number, frames), force: args.writing.force };
-    (0..frames).map(made).collect()
-}
-
-fn frame_path(args: &FieldArgs, number: u32, frames: u32) -> PathBuf {
-    match frames > 1 && !is_stream(&args.output) {
-        true => numbered(&args.output, number, frames),
-        false => args.output.clone(),
-    }
-}
-
-/// A place for each frame; what can be known of their formats before the work begins is checked.
-fn targets(args: &FieldArgs) -> Result<Vec<Place>, Failure> {
-    let frames = args.frames.unwrap_or(1);
-    if frames > 1 && is_stream(&args.output) {
-        return Err(
-            Failure::usage("a sequence cannot go to standard output").hint("a name after -o, such as morph.ply")
-        );
-    }
-    let place = |number: u32| {
-        let path = frame_path(args, number, frames);
-        let of_grid = match args.writing.out_format.or_else(|| AnyFormat::from_path(&path)) {
-            Some(AnyFormat::Grid(format)) => {
-                output::check_extension(&path, format.name())?;
-                Some(format)
-            }
-            _ => None,
-        };
-        match of_grid {
-            Some(_) if args.paint.is_some() => {
-                Err(Failure::usage("--paint colours the vertices of a mesh, and a lattice has none")
-                    .hint("the values themselves: the expression of --paint in the place of EXPR"))
-            }
-            Some(_) if args.no_fit || args.no_collapse || args.simplify.is_some() => Err(Failure::usage(
-                "--no-fit, --no-collapse and --simplify are about the triangles of a mesh, and a lattice has none",
-            )),
-            None if args.band.is_some() => {
-                Err(Failure::usage("--band is about the values over a lattice, and a mesh has none")
-                    .hint("a name after -o that ends in .vti, .nrrd, .npy or .vdb"))
-            }
-            Some(format) => Ok(Place::Grid(path, format)),
-            None if args.writing.out_format.is_none() && AnyFormat::from_path(&path).is_none() && !is_stream(&path) => {
-                Err(Failure::usage(format!("the name {} does not tell its format", path.display())).hint(
-                    "end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or for a lattice in .vti, .nrrd, .npy or .vdb",
-                ))
-            }
-            None => Target::new(&path, &args.writing).map(Place::Mesh),
-        }
-    };
-    (0..frames).map(place).collect()
-}
-
-/// `morph.ply` as `morph_03.ply`, with as many digits as the last number has.
-fn numbered(path: &Path, number: u32, frames: u32) -> PathBuf {
-    let digits = (frames - 1).to_string().len();
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let extension = path.extension().map_or(String::new(), |extension| format!(".{}", extension.to_string_lossy()));
-    path.with_file_name(format!("{stem}_{number:0digits$}{extension}"))
-}
-
 /// What lengths are measured against; without operands only lengths in model units mean something.
 fn scale(args: &FieldArgs, unit: Option<Unit>, bounds: Option<&Bounds>) -> Result<Scale, Failure> {
     let diagonal = bounds.map_or(0.0, |bounds| bounds.diagonal());
     let base = Scale { unit, diagonal, voxel: None };
-    let voxel = match (&args.voxel, bounds) {
+    let voxel = match (&args.voxels.voxel, bounds) {
         (Some(length), _) => Some(length.resolve(&base)?),
-        (None, Some(bounds)) => Some(bounds.size().max_element() / f64::from(args.resolution)),
+        (None, Some(bounds)) => Some(bounds.size().max_element() / f64::from(args.voxels.resolution)),
         (None, None) => None,
     };
     Ok(Scale { voxel, ..base })
 }
 
 fn options(args: &FieldArgs, scale: &Scale, given: &Given, held: u64) -> Result<Options, Failure> {
-    let voxel = match (&args.voxel, scale.voxel) {
+    let voxel = match (&args.voxels.voxel, scale.voxel) {
         (Some(_), Some(h)) => VoxelSize::Length(h),
-        _ => VoxelSize::Along(args.resolution),
+        _ => VoxelSize::Along(args.voxels.resolution),
     };
     let usual = FitOptions::default();
     // Colours that vary are kept apart by the vertices. Lengths are measured when the voxel is known.
@@ -271,7 +191,7 @@ fn resolved(args: &FieldArgs, unit: Option<Unit>, options: &Options, scale: &Sca
         "paint": args.paint,
         "frames": args.frames,
         "voxel": scale.voxel,
-        "resolution": args.voxel.is_none().then_some(args.resolution),
+        "resolution": args.voxels.voxel.is_none().then_some(args.voxels.resolution),
         "band": args.band.map(|band| band.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
@@ -311,7 +231,7 @@ impl Run<'_> {
     }
 
     fn build(&mut self, (text, node): &(&str, Node), share: f64) -> Result<Built, Failure> {
-        let named = |error: LanguageError| explain(text, &self.texts.names, &error);
+        let named = |error: LanguageError| explain(text, &error);
         let node: Node<Value> = node
             .at_frame(share)
             .and_then(|node| node.resolve(|value, suffix| length(value, suffix, self.scale)))
@@ -329,7 +249,7 @@ impl Run<'_> {
             let hint = format!("a larger voxel; the lattices that were read take {lattices} of it");
             return Failure::memory(needed.saturating_add(self.held), cap, self.args.max_memory).hint(hint);
         }
-        let asked = Asked { voxel: self.args.voxel.is_some(), memory: self.args.max_memory };
+        let asked = Asked { voxel: self.args.voxels.voxel.is_some(), memory: self.args.max_memory };
         Failure::pipeline(error, &labels, unit.as_deref(), asked)
     }
 
@@ -338,16 +258,18 @@ impl Run<'_> {
         let precision = Precision::of_format(target.options.format);
         let options = Options { precision, ..self.simplified(built)? };
         let made = pipeline::field_surface(built, &options, progress);
-        let (mut outcome, mut account) = made.map_err(|e| self.failure(&e))?;
+        let (mut outcome, account) = made.map_err(|e| self.failure(&e))?;
+        let mut smaller = None;
         if let Some(volume) = self.args.drop_smaller {
             let scale = Scale { voxel: Some(outcome.lattice.h), ..*self.scale };
             let least = volume.resolve(&scale)?;
             (outcome, _) = self.dropped(outcome, least)?;
-            account.smaller = outcome.report.smaller;
+            smaller = Some(outcome.report.smaller);
         }
         report.options["voxel"] = json!(outcome.lattice.h);
-        report.stages.extend(outcome.report.stages.iter().cloned());
-        report.fields.push(account);
+        report.stages.append(&mut outcome.report.stages);
+        let fit = outcome.report.fit.take();
+        note(report, FrameEntry { field: account, fit, smaller, distance: None, output: None });
         let operands = self.given.operands();
         let paint = match &self.texts.paint {
             Some(text) => {
@@ -362,12 +284,14 @@ impl Run<'_> {
         let carried = || pipeline::carry_texture(&outcome.solid, &outcome.sources, &operands);
         let texture = self.texts.paint.is_none().then(carried).flatten();
         let paint = Paint { colours: paint.as_ref(), texture: texture.as_ref(), beside: None };
-        solid::write(&outcome.solid, paint, &target, self.session, report)
+        let written = solid::write(&outcome.solid, paint, &target, self.session, report)?;
+        report.written(written);
+        Ok(())
     }
 
     fn dropped(&self, outcome: Outcome, least: f64) -> Result<(Outcome, Vec<usize>), Failure> {
         let none: [Operand<'_>; 0] = [];
-        let asked = Asked { voxel: self.args.voxel.is_some(), memory: self.args.max_memory };
+        let asked = Asked { voxel: self.args.voxels.voxel.is_some(), memory: self.args.max_memory };
         pipeline::drop_smaller(outcome, none, least, &self.session.progress)
             .map_err(|e| Failure::pipeline(&e, &self.given.labels(), None, asked))
     }
@@ -391,13 +315,20 @@ impl Run<'_> {
             None => FieldBand::Voxels(USUAL_BAND),
         };
         let made = pipeline::field_grid(built, band, self.options, &self.session.progress);
-        let outcome = made.map_err(|e| self.failure(&e))?;
-        report.stages.extend(outcome.report.stages.iter().cloned());
-        report.distance = Some(outcome.report.clone());
-        let entry = sdf::write(path, &outcome, self.scale.unit, format, self.session, report)?;
-        report.output = Some(entry);
-        report.fields.push(FieldReport { operands: built.operands.clone(), ..FieldReport::default() });
+        let mut outcome = made.map_err(|e| self.failure(&e))?;
+        report.stages.append(&mut outcome.report.stages);
+        let output = Some(sdf::write(path, &outcome, self.scale.unit, format, self.session, report)?);
+        let field = FieldReport { operands: built.operands.clone(), ..FieldReport::default() };
+        note(report, FrameEntry { field, fit: None, smaller: None, distance: Some(outcome.report), output });
         Ok(())
+    }
+}
+
+/// One more result.
+fn note(report: &mut RunReport, frame: FrameEntry) {
+    match &mut report.result {
+        Some(RunResult::Field { frames }) => frames.push(frame),
+        other => *other = Some(RunResult::Field { frames: vec![frame] }),
     }
 }
 
@@ -443,8 +374,12 @@ fn say(session: &Session, report: &RunReport, frames: usize, unit: Option<Unit>)
     let name = unit.map(|unit| unit.to_string());
     let unit: UnitName<'_> = name.as_deref();
     let mut rows: Vec<Row> = summary::input_rows(report);
-    if let Some(field) = report.fields.last() {
-        for operand in &field.operands {
+    let last = match &report.result {
+        Some(RunResult::Field { frames }) => frames.last(),
+        _ => None,
+    };
+    if let Some(frame) = last {
+        for operand in &frame.field.operands {
             let label = report.inputs.get(operand.operand).and_then(|input| input.name.clone()).unwrap_or_default();
             let how = match operand.made {
                 "exact" => "its exact distance",
@@ -455,12 +390,13 @@ fn say(session: &Session, report: &RunReport, frames: usize, unit: Option<Unit>)
             };
             rows.push(("done", format!("{label}: {how}")));
         }
-        rows.extend(dropped::smaller(&field.smaller, unit).map(|text| ("dropped", text)));
+        let smaller = frame.smaller.as_ref().and_then(|smaller| dropped::smaller(smaller, unit));
+        rows.extend(smaller.map(|text| ("dropped", text)));
     }
-    if let Some(distance) = &report.distance {
+    if let Some(distance) = last.and_then(|frame| frame.distance.as_ref()) {
         rows.push(("voxel", summary::voxel(distance.voxel, distance.dims, unit)));
         let [low, high] = distance.range.map(|value| words::number(value.into()));
-        if let Some(output) = &report.output {
+        if let Some(output) = report.output() {
             rows.push(("result", format!("{}: {low} to {high}; {}", output.path, words::bytes(output.bytes))));
         }
     }
@@ -468,25 +404,12 @@ fn say(session: &Session, report: &RunReport, frames: usize, unit: Option<Unit>)
         rows.push(("frames", words::count(frames)));
     }
     rows.extend(summary::result_rows(report, unit));
-    rows.push(summary::time(report));
-    if session.verbose {
-        rows.extend(summary::stages(report));
-    }
-    session.say(summary::table(&rows).trim_end());
+    epilogue::say(session, report, rows);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn frames_get_numbers_of_one_length_before_the_extension() {
-        let at = |path: &str, number, frames| numbered(Path::new(path), number, frames).display().to_string();
-        assert_eq!(at("out/morph.ply", 3, 10), "out/morph_3.ply");
-        assert_eq!(at("morph.ply", 3, 11), "morph_03.ply");
-        assert_eq!(at("a.b.vti", 24, 101), "a.b_024.vti");
-        assert_eq!(at("plain", 0, 2), "plain_0");
-    }
 
     #[test]
     fn lengths_keep_their_sign_and_need_something_to_be_measured_by() {

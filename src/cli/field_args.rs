@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::{CommonArgs, EXIT_CODES, InputArgs, OutputArgs};
 use super::choices::OrientChoice;
-use super::length::{BandChoice, Length, Simplify, parse_resolution, parse_size};
+use super::length::{BandChoice, Simplify, parse_size};
+use super::shared_args::VoxelArgs;
+use super::shared_args::{CommonArgs, EXIT_CODES, InputArgs, OutputArgs};
 use super::volume::Volume;
 use crate::field::language;
 
@@ -22,12 +23,9 @@ pub struct FieldArgs {
     /// Where to write the result: a mesh, or with .vti .nrrd .npy .vdb the values over a lattice
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
-    /// Voxels along the longest side of the box around the shape
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = parse_resolution, conflicts_with = "voxel")]
-    pub resolution: u32,
-    /// Size of a voxel, instead of --resolution
-    #[arg(long, value_name = "LEN", allow_hyphen_values = true)]
-    pub voxel: Option<Length>,
+    /// The size of the voxels.
+    #[command(flatten)]
+    pub voxels: VoxelArgs,
     /// How far from zero a lattice has the values, or `full` for all of them [default: 4h, and full for what is no shape]
     #[arg(long, value_name = "LEN|full")]
     pub band: Option<BandChoice>,

@@ -5,9 +5,9 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 use super::exit::{Exit, Failure};
-use super::input::{is_stream, label, plain_reason};
-use super::output;
-use crate::io::draft::{clear_leftovers, folder_of};
+use super::streams::{self, is_stream, label, plain_reason};
+use crate::io::draft::folder_of;
+use crate::io::leftovers::clear_leftovers;
 
 /// A file that a run makes.
 pub struct Made {
@@ -77,7 +77,7 @@ impl KeptFiles {
 /// Makes sure that files can be made in all folders, and removes what killed runs have left of these files.
 pub fn prepare<'a>(made: impl IntoIterator<Item = &'a Made>) -> Result<(), Failure> {
     let files = made.into_iter().map(|made| made.path.as_path());
-    let targets: Vec<PathBuf> = files.filter(|path| !output::is_direct(path)).map(resolved).collect();
+    let targets: Vec<PathBuf> = files.filter(|path| !streams::is_direct(path)).map(resolved).collect();
     let mut folders: Vec<&Path> = targets.iter().map(|target| folder_of(target)).collect();
     folders.sort_unstable();
     folders.dedup();

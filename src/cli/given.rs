@@ -2,16 +2,17 @@
 
 use std::path::Path;
 
-use super::args::InputArgs;
 use super::exit::Failure;
-use super::input::{self, Input, is_stream};
-use super::negative;
+use super::input::{self, Input};
 use super::report::RunReport;
 use super::session::Session;
+use super::shared_args::InputArgs;
 use super::slice::{self, GridInput};
+use super::streams::is_stream;
 use crate::io::{Format, GridFormat, Unit};
 use crate::mesh::TriMesh;
 use crate::pipeline::Operand;
+use crate::progress::Stage;
 
 /// Files as read.
 pub struct Given {
@@ -42,7 +43,7 @@ impl Given {
         notes: &mut Vec<String>,
     ) -> Result<Self, Failure> {
         input::check_streams(paths)?;
-        session.progress.stage("read")?;
+        session.progress.stage(Stage::Read)?;
         let mut inputs = Self { meshes: Vec::new(), grids: Vec::new(), order: Vec::new() };
         for path in paths {
             let bytes = input::bytes_of(path, session)?;
@@ -53,7 +54,7 @@ impl Given {
             } else {
                 inputs.order.push(Which::Mesh(inputs.meshes.len()));
                 let mut mesh = input::mesh_of(path, &bytes, args, session, notes)?;
-                negative::leave_out(&mut mesh, notes);
+                input::leave_out(&mut mesh, notes);
                 inputs.meshes.push(mesh);
             }
         }

@@ -2,43 +2,24 @@
 
 use std::path::Path;
 
-use serde::Serialize;
 use serde_json::json;
 
-use super::args::{ConvertArgs, InspectArgs};
 use super::choices::AnyFormat;
+use super::convert_args::ConvertArgs;
+use super::entries::GridEntry;
 use super::exit::{Exit, Failure};
 use super::given::Given;
-use super::input;
-use super::output;
+use super::inspect_args::InspectArgs;
 use super::report::RunReport;
+use super::result::RunResult;
 use super::session::Session;
 use super::slice::GridInput;
-use super::summary::{self, Row};
+use super::streams::{self, is_direct};
+use super::table::{self, Row};
 use super::words::{self, UnitName};
-use super::{machine, output::is_direct};
+use super::{machine, output, target};
 use crate::io::{DistanceSamples, Format, GridFile, GridFormat, GridMeasures, GridValues, Unit};
-
-/// A lattice in the report, in the unit of the run.
-#[derive(Debug, Clone, Serialize)]
-pub struct GridEntry {
-    /// Voxels along x, y, z.
-    pub dims: [usize; 3],
-    /// Where the first voxel lies.
-    pub origin: [f64; 3],
-    /// From one voxel to the next.
-    pub spacing: f64,
-    /// Values are clamped to ± this, where the file says so.
-    pub band: Option<f64>,
-    /// The smallest and the largest value.
-    pub range: [f64; 2],
-    /// Voxels below zero, which is inside.
-    pub inside: u64,
-    /// Their volume.
-    pub inside_volume: f64,
-    /// Voxels whose values are stored one by one.
-    pub stored: u64,
-}
+use crate::progress::Stage;
 
 impl GridEntry {
     fn of(file: &GridFile, measures: &GridMeasures) -> Self {
@@ -70,15 +51,15 @@ pub fn inspect(
     }
     report.options = json!({ "unit": unit.map(|unit| unit.to_string()) });
     given.describe(report);
-    let found = report.timed("examine", |_| {
-        session.progress.stage("examine")?;
+    let found = report.timed(Stage::Examine, |_| {
+        session.progress.stage(Stage::Examine)?;
         Ok::<_, Failure>(GridEntry::of(&grid.file, &grid.file.measures()))
     })?;
-    report.grid = Some(found.clone());
+    report.result = Some(RunResult::Lattice { grid: found.clone() });
     session.clear_bar();
     if !args.common.json {
         let name = unit.map(|unit| unit.to_string());
-        output::write_stream(summary::table(&rows(grid, &found, name.as_deref())).as_bytes())?;
+        streams::write_stream(table::table(&rows(grid, &found, name.as_deref())).as_bytes())?;
     }
     Ok(Exit::Done)
 }
@@ -133,7 +114,7 @@ fn target(args: &ConvertArgs, label: &str) -> Result<GridFormat, Failure> {
     match args.writing.out_format.or(named) {
         Some(AnyFormat::Grid(format)) => Ok(format),
         Some(AnyFormat::Mesh(format)) => Err(makes_a_mesh(format)),
-        None if input::is_stream(&args.output) => {
+        None if streams::is_stream(&args.output) => {
             Err(Failure::usage("standard output has no name that tells its format")
                 .hint("--out-format says it, for example --out-format nrrd"))
         }
@@ -152,7 +133,7 @@ pub fn convert(
 ) -> Result<Exit, Failure> {
     let Some(grid) = given.grids.first() else { return Err(Failure::internal("nothing was read")) };
     let format = target(args, &grid.entry.path)?;
-    output::check_extension(&args.output, format.name())?;
+    target::check_extension(&args.output, format.name())?;
     if args.writing.ascii {
         return Err(Failure::usage("--ascii is for STL and PLY; lattices are written as bytes"));
     }
@@ -175,15 +156,15 @@ pub fn convert(
         plane: &plane,
         blocks: None,
     };
-    let entry = report.timed("write and verify", |_| {
-        session.progress.stage("write")?;
+    let entry = report.timed(Stage::WriteAndVerify, |_| {
+        session.progress.stage(Stage::Write)?;
         output::write_grid(&args.output, &samples, format, session)
     })?;
     session.clear_bar();
     let name = unit.filter(|_| format.says_where()).map_or(String::new(), |unit| format!(", in {unit}"));
     let [x, y, z] = file.dims;
     session.say(&format!("{}: {x} x {y} x {z} voxels, as {format}{name}, {}", entry.path, words::bytes(entry.bytes)));
-    report.output = Some(entry);
+    report.result = Some(RunResult::Conversion { output: entry });
     Ok(Exit::Done)
 }
 

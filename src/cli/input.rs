@@ -3,16 +3,18 @@
 use std::io::Read;
 use std::path::Path;
 
-use sha2::{Digest, Sha256};
-
-use super::args::InputArgs;
+use super::entries::{InputEntry, PartEntry};
 use super::exit::{Exit, Failure};
-use super::negative;
-use super::report::{InputEntry, PartEntry};
 use super::session::Session;
+use super::shared_args::InputArgs;
+use super::streams::is_stream;
+use super::streams::label;
+use super::streams::plain_reason;
+use super::streams::sha256;
 use super::words;
 use crate::io::{self, Loaded, Part, TextureMap, Unit};
 use crate::mesh::{Validity, validate};
+use crate::progress::Stage;
 
 /// One mesh as read.
 pub struct Input {
@@ -29,16 +31,6 @@ pub fn held_by_textures(inputs: &[Input]) -> u64 {
     inputs.iter().filter_map(|input| input.loaded.texture.as_ref()).map(TextureMap::bytes).sum()
 }
 
-/// Whether `path` stands for a standard stream.
-pub fn is_stream(path: &Path) -> bool {
-    path.as_os_str() == "-"
-}
-
-/// How a path is called in messages.
-pub fn label(path: &Path) -> String {
-    if is_stream(path) { "standard input".into() } else { path.display().to_string() }
-}
-
 /// Reads every path, in order; the standard input at most once. What the readers found odd goes to `notes`, and so
 /// does what the files would take away from the rest.
 pub fn read_all(
@@ -48,7 +40,7 @@ pub fn read_all(
     notes: &mut Vec<String>,
 ) -> Result<Vec<Input>, Failure> {
     let mut inputs = read_operands(paths, args, session, notes)?;
-    inputs.iter_mut().for_each(|input| negative::leave_out(input, notes));
+    inputs.iter_mut().for_each(|input| leave_out(input, notes));
     Ok(inputs)
 }
 
@@ -60,7 +52,7 @@ pub fn read_operands(
     notes: &mut Vec<String>,
 ) -> Result<Vec<Input>, Failure> {
     check_streams(paths)?;
-    session.progress.stage("read")?;
+    session.progress.stage(Stage::Read)?;
     let mut read = |path: &&Path| mesh_of(path, &bytes_of(path, session)?, args, session, notes);
     paths.iter().map(&mut read).collect()
 }
@@ -139,22 +131,6 @@ fn unreadable(label: &str, stream: bool, args: &InputArgs, error: &io::FileError
     }
 }
 
-/// "No such file or directory" without "(os error 2)".
-pub fn plain_reason(error: &std::io::Error) -> String {
-    let text = error.to_string();
-    text.split(" (os error").next().unwrap_or(&text).to_string()
-}
-
-/// SHA-256 of `bytes`, in hexadecimal digits.
-pub fn sha256(bytes: &[u8]) -> String {
-    hex(&Sha256::digest(bytes))
-}
-
-/// Bytes in hexadecimal digits.
-pub fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
 /// The state of a mesh as its file holds it.
 pub fn examine(loaded: &Loaded, session: &Session) -> Result<Validity, Failure> {
     Ok(validate(&loaded.mesh, &loaded.validate_options(), &session.progress)?)
@@ -203,4 +179,23 @@ pub fn rescaled(label: &str, own: Unit, unit: Unit) -> String {
 /// A line on an input without a unit beside others.
 pub fn without_unit(label: &str, unit: Unit) -> String {
     format!("{label} carries no unit; its numbers are taken as {}", words::several(unit))
+}
+
+/// For what has nothing to subtract from: forgets the negative parts, and says which.
+pub fn leave_out(input: &mut Input, notes: &mut Vec<String>) {
+    if input.loaded.negative.take().is_some() {
+        notes.push(format!(
+            "{}: {} left out; repair and the booleans subtract them",
+            input.label,
+            named(&input.entry.negative_parts)
+        ));
+    }
+}
+
+/// "2 negative parts (`a`, `b`)".
+fn named(parts: &[PartEntry]) -> String {
+    let names: Vec<String> =
+        parts.iter().filter(|part| !part.name.is_empty()).map(|part| format!("`{}`", part.name)).collect();
+    let names = if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
+    format!("{}{names}", words::plural(parts.len(), "negative part"))
 }

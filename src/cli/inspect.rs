@@ -2,57 +2,52 @@
 
 use serde_json::json;
 
-use super::args::InspectArgs;
 use super::choices::Defect;
 use super::exit::{Asked, Exit, Failure};
 use super::given::Given;
 use super::input::{self, Input};
-use super::length::Scale;
+use super::inspect_args::InspectArgs;
 use super::report::RunReport;
+use super::result::RunResult;
 use super::session::Session;
-use super::{grids, summary, words};
+use super::{grids, summary, table, words};
 use crate::io::Unit;
 use crate::mesh::{Bounds, MassProperties, Overhang, ValidateOptions, Validity, validate};
-use crate::pipeline::{self, LengthsReport, Options, ThicknessReport, VoxelSize};
-
-/// Degrees between level and upright.
-pub fn overhang_angle(text: &str) -> Result<f64, String> {
-    match text.trim_end_matches('°').parse::<f64>() {
-        Ok(degrees) if (0.0..90.0).contains(&degrees) => Ok(degrees),
-        _ => Err("an angle from 0 to less than 90 degrees is needed".into()),
-    }
-}
+use crate::pipeline::{self, LengthsReport, Options, ThicknessReport};
+use crate::progress::Stage;
 
 /// Looks at one file and prints a table.
 pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let mut given = report
-        .timed("read", |report| Given::read(&[&args.input], &args.reading, None, session, &mut report.warnings))?;
+        .timed(Stage::Read, |report| Given::read(&[&args.input], &args.reading, None, session, &mut report.warnings))?;
     let unit = given.common_unit(&args.reading, &mut report.warnings);
     if !given.grids.is_empty() {
         return grids::inspect(args, &given, unit, session, report);
     }
     let Some(input) = given.meshes.first() else { return Err(Failure::internal("nothing was read")) };
-    session.progress.stage("examine")?;
-    let validity = report.timed("examine", |_| input::examine(&input.loaded, session))?;
+    session.progress.stage(Stage::Examine)?;
+    let validity = report.timed(Stage::Examine, |_| input::examine(&input.loaded, session))?;
     report.warnings.extend(closable(input, &validity, session)?);
     report.warnings.extend(summary::size_doubts(&input.loaded, unit));
     report.options = json!({ "unit": unit.map(|unit| unit.to_string()) });
-    report.inputs = vec![super::report::InputEntry { validity: Some(validity.clone()), ..input.entry.clone() }];
+    report.inputs = vec![super::entries::InputEntry { validity: Some(validity.clone()), ..input.entry.clone() }];
     let solid = validity.is_oriented_manifold();
-    report.mass = solid.then(|| MassProperties::of(&input.loaded.mesh)).flatten();
-    report.overhang = solid.then(|| Overhang::of(&input.loaded.mesh, args.overhang));
-    if args.thickness {
-        report.thickness = Some(report.timed("thickness", |_| thickness(args, input, unit, session))?);
-    }
+    let mass = solid.then(|| MassProperties::of(&input.loaded.mesh)).flatten();
+    let overhang = solid.then(|| Overhang::of(&input.loaded.mesh, args.overhang));
+    let thickness = match args.thickness {
+        true => Some(report.timed(Stage::Thickness, |_| thickness(args, input, unit, session))?),
+        false => None,
+    };
     session.clear_bar();
     if !args.common.json {
         let mut rows = summary::inspection(input, &validity, unit);
         let name = unit.map(|unit| unit.to_string());
-        rows.extend(report.mass.iter().flat_map(|mass| mass_rows(mass, name.as_deref())));
-        rows.extend(report.overhang.iter().map(|found| overhang_row(found, &validity, name.as_deref())));
-        rows.extend(report.thickness.iter().flat_map(|thickness| thickness_rows(thickness, name.as_deref())));
-        super::output::write_stream(summary::table(&rows).as_bytes())?;
+        rows.extend(mass.iter().flat_map(|mass| mass_rows(mass, name.as_deref())));
+        rows.extend(overhang.iter().map(|found| overhang_row(found, &validity, name.as_deref())));
+        rows.extend(thickness.iter().flat_map(|thickness| thickness_rows(thickness, name.as_deref())));
+        super::streams::write_stream(table::table(&rows).as_bytes())?;
     }
+    report.result = Some(RunResult::Inspection { mass, overhang, thickness });
     let found: Vec<String> = failing(&args.fail_on, &validity);
     if found.is_empty() {
         return Ok(Exit::Done);
@@ -60,7 +55,7 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
     Err(Failure::new(Exit::Limit, format!("{} has {}, as --fail-on asks", input.label, words::list(&found))))
 }
 
-fn mass_rows(mass: &MassProperties, unit: words::UnitName<'_>) -> Vec<summary::Row> {
+fn mass_rows(mass: &MassProperties, unit: words::UnitName<'_>) -> Vec<table::Row> {
     // Of density 1 the mass is the volume, and moments have the fifth power of a length.
     let moments = |values: [f64; 3]| {
         let values = values.map(words::number).join(" ");
@@ -78,7 +73,7 @@ fn mass_rows(mass: &MassProperties, unit: words::UnitName<'_>) -> Vec<summary::R
     ]
 }
 
-fn overhang_row(found: &Overhang, validity: &Validity, unit: words::UnitName<'_>) -> summary::Row {
+fn overhang_row(found: &Overhang, validity: &Validity, unit: words::UnitName<'_>) -> table::Row {
     let share = words::number(100.0 * found.area / validity.area.max(f64::MIN_POSITIVE));
     let degrees = words::number(found.degrees);
     let resting = words::area(found.resting, unit);
@@ -100,17 +95,14 @@ fn thickness(
 ) -> Result<ThicknessReport, Failure> {
     let mesh = &input.loaded.mesh;
     let diagonal = mesh.bounds().as_ref().map_or(0.0, Bounds::diagonal);
-    let voxel = match &args.voxel {
-        Some(length) => VoxelSize::Length(length.resolve(&Scale { unit, diagonal, voxel: None })?),
-        None => VoxelSize::Along(args.resolution),
-    };
+    let voxel = args.voxels.size(unit, diagonal)?;
     let name = unit.map(|unit| unit.to_string());
-    let asked = Asked { voxel: args.voxel.is_some(), memory: None };
+    let asked = Asked { voxel: args.voxels.voxel.is_some(), memory: None };
     let failed = |e| Failure::pipeline(&e, std::slice::from_ref(&input.label), name.as_deref(), asked);
     pipeline::thickness(mesh, &Options::new(voxel), &session.progress).map_err(failed)
 }
 
-fn thickness_rows(found: &ThicknessReport, unit: words::UnitName<'_>) -> Vec<summary::Row> {
+fn thickness_rows(found: &ThicknessReport, unit: words::UnitName<'_>) -> Vec<table::Row> {
     let described = |lengths: &LengthsReport| {
         if lengths.count == 0 {
             return "none".to_string();

@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::Args;
 
 use super::exit::{Exit, Failure};
-use super::input::is_stream;
+use super::streams::is_stream;
 
 /// Whether a result that is mostly lost is written all the same.
 #[derive(Debug, Clone, Copy, Args)]

@@ -18,7 +18,7 @@ const TOO_MUCH_THIN: f64 = 0.1;
 /// A sentence for each reason why the result is not what the input describes. Such a result is written only when that is asked for.
 pub fn lost(report: &RunReport) -> Vec<String> {
     let mut sentences = Vec::new();
-    if let Some(pipeline) = &report.pipeline {
+    if let Some(pipeline) = report.pipeline() {
         let thin = &pipeline.thin;
         if share(thin.lost_spans, thin.spans) > TOO_MANY_LOST && !pipeline.kept_all() {
             sentences.push(format!(
@@ -44,7 +44,7 @@ pub fn lost(report: &RunReport) -> Vec<String> {
 
 /// A sentence when the result is mostly a guess. Nothing of the input is lost by that, so it is written: only a look at it tells.
 pub fn guessed(report: &RunReport) -> Option<String> {
-    let vote = &report.pipeline.as_ref()?.vote;
+    let vote = &report.pipeline()?.vote;
     (share(vote.doubtful, vote.voxels) > TOO_MANY_DOUBTS).then(|| {
         format!(
             "{} of the voxels near the surface are a guess: the surface is too open to tell inside from outside",
@@ -71,6 +71,7 @@ fn share(part: usize, whole: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::result::RunResult;
     use super::*;
     use crate::pipeline::{Report, ThinReport};
     use crate::vote::VoteReport;
@@ -78,7 +79,8 @@ mod tests {
     fn report(lost_spans: usize, doubtful: usize) -> RunReport {
         let thin = ThinReport { spans: 1000, lost_spans, ..ThinReport::default() };
         let vote = VoteReport { voxels: 1000, doubtful, ..VoteReport::default() };
-        RunReport { pipeline: Some(Report { thin, vote, ..Report::default() }), ..RunReport::new("repair") }
+        let result = RunResult::solid(Report { thin, vote, ..Report::default() });
+        RunReport { result: Some(result), ..RunReport::new("repair") }
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::exit::Failure;
-use super::output;
 use super::session::Session;
+use super::{output, side};
 use crate::io::{self, FaceMap, LegendEntry};
 use crate::pipeline::{Operand, Outcome, TriangleKind, kinds};
 
@@ -53,7 +53,7 @@ pub fn write(
     let map = FaceMap { colours: &colours, numbers: &properties, legend: &legend(most), comments: &comments };
     let mut bytes = Vec::new();
     io::encode_face_map(&outcome.solid, &map, &mut bytes).map_err(|error| output::unencoded(path, &error))?;
-    output::write_side(path, &bytes, session)
+    side::write_side(path, &bytes, session)
 }
 
 /// What the colours mean; there are as many canals.

@@ -7,23 +7,29 @@ mod change;
 mod choices;
 mod compare;
 mod convert;
+mod convert_args;
 mod course;
 mod csg;
-mod csg_parser;
 mod decimate;
 mod devices;
+mod done;
 mod doubts;
+mod drain;
 mod dropped;
 mod ending;
+mod entries;
+mod epilogue;
 mod exit;
 mod field;
 mod field_args;
+mod field_places;
 mod files;
 mod given;
 mod grids;
 mod hollow;
 mod input;
 mod inspect;
+mod inspect_args;
 mod keep;
 mod length;
 mod limits;
@@ -39,15 +45,27 @@ mod progress_bar;
 mod render;
 mod repair;
 mod report;
+mod reporting;
+mod result;
+mod say;
+#[cfg(feature = "schema")]
+mod schema;
 mod sdf;
+mod sdf_args;
 mod session;
 mod shared_args;
+mod side;
 mod slice;
 mod solid;
+mod solid_args;
 mod split;
+mod streams;
 mod summary;
+mod table;
+mod target;
 mod transform;
 mod volume;
+mod weights;
 mod words;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -58,15 +76,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::ldi::Expression;
 use crate::morphology::Operation;
-use args::{CommonArgs, SolidArgs, Verb};
+use args::Verb;
 use exit::{Exit, Failure};
 use files::{KeptFiles, Made};
 use report::RunReport;
-use session::{Session, print_failure};
+use say::print_failure;
+use session::Session;
+use shared_args::CommonArgs;
+use solid_args::SolidArgs;
 
 /// Runs the program on the process's arguments.
 pub fn main() -> ExitCode {
-    let cli = match preset::parse(std::env::args_os()) {
+    let cli = match args::parse(std::env::args_os()) {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version also come this way; there is nobody to tell if printing fails.
@@ -133,7 +154,7 @@ fn dispatch(verb: &Verb) -> Exit {
         Verb::Field(args) => {
             let job = Job {
                 inputs: csg::paths(&args.operands),
-                made: field::made(args),
+                made: field_places::made(args),
                 max_memory: args.max_memory,
                 ..Job::new("field", &args.common)
             };
@@ -172,21 +193,23 @@ fn dispatch(verb: &Verb) -> Exit {
             let job = Job { inputs, made, ..Job::new("render", &args.common) };
             run(job, |session, report| render::run(args, session, report))
         }
+        #[cfg(feature = "schema")]
+        Verb::Schema => schema::run(),
     }
 }
 
-fn booleans(verb: &'static str, args: &args::BooleanArgs, expression: fn(usize) -> Expression) -> Exit {
+fn booleans(verb: &'static str, args: &boolean::BooleanArgs, expression: fn(usize) -> Expression) -> Exit {
     let paths: Vec<&Path> = args.inputs.iter().map(AsRef::as_ref).collect();
     solid(verb, &args.solid, &paths, |session, report| boolean::run(args, expression, session, report))
 }
 
-fn grow(verb: &'static str, args: &args::GrowArgs, operation: Operation) -> Exit {
+fn grow(verb: &'static str, args: &morphology::GrowArgs, operation: Operation) -> Exit {
     solid(verb, &args.morphology.solid, &[&args.morphology.input], |session, report| {
         morphology::grow(args, operation, session, report)
     })
 }
 
-fn morphology(verb: &'static str, args: &args::MorphologyArgs, operation: Operation) -> Exit {
+fn morphology(verb: &'static str, args: &morphology::MorphologyArgs, operation: Operation) -> Exit {
     solid(verb, &args.solid, &[&args.input], |session, report| morphology::run(args, operation, None, session, report))
 }
 
@@ -231,17 +254,17 @@ impl<'a> Job<'a> {
 
     /// Looks at all files of the run.
     fn check(&mut self) -> Result<(), Failure> {
-        report::check_streams(self.common, self.made.iter().map(|made| made.path.as_path()))?;
+        reporting::check_streams(self.common, self.made.iter().map(|made| made.path.as_path()))?;
         let report = Made::side("--report", self.common.report.as_ref());
         if self.plan {
             let files: Vec<Made> = std::mem::take(&mut self.made).into_iter().chain(report).collect();
             files::check(&self.inputs, &files)?;
-            report::check_name(self.common)?;
+            reporting::check_name(self.common)?;
             return files::prepare(files.iter().filter(|file| file.flag == "--report"));
         }
         self.made.extend(report);
         files::check(&self.inputs, &self.made)?;
-        report::check_name(self.common)?;
+        reporting::check_name(self.common)?;
         files::prepare(&self.made)
     }
 }
@@ -267,7 +290,7 @@ fn run(mut job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<E
     let outcome = outcome.and_then(|exit| {
         session.check_files()?;
         report.close(&Ok(exit), session.start);
-        report.emit(job.common, &session)?;
+        reporting::emit(&report, job.common, &session)?;
         session.publish(exit)?;
         Ok(exit)
     });
@@ -283,7 +306,7 @@ fn run(mut job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<E
     // Of a run that failed there is nothing but its report.
     session.discard();
     report.close(&Err(failure.clone()), session.start);
-    let reported = report.emit(job.common, &session).and_then(|()| session.publish(failure.exit));
+    let reported = reporting::emit(&report, job.common, &session).and_then(|()| session.publish(failure.exit));
     for failure in std::iter::once(&failure).chain(reported.as_ref().err()) {
         print_failure(failure);
     }

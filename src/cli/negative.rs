@@ -1,8 +1,6 @@
 //! Negative parts of a file, which slicers take away from the rest: an operand of their own where solids are combined.
 
 use super::input::Input;
-use super::report::PartEntry;
-use super::words;
 use crate::io::Loaded;
 use crate::ldi::Expression;
 
@@ -16,7 +14,7 @@ pub fn as_operands(inputs: &mut Vec<Input>, expression: &Expression) -> Expressi
         negative_of[n] = Some(inputs.len());
         let (own, format, unit) = (&inputs[n], inputs[n].loaded.format, inputs[n].loaded.unit);
         let label = format!("{} (negative parts)", own.label);
-        let entry = super::report::InputEntry {
+        let entry = super::entries::InputEntry {
             path: label.clone(),
             name: None,
             parts: std::mem::take(&mut inputs[n].entry.negative_parts),
@@ -38,23 +36,4 @@ pub fn as_operands(inputs: &mut Vec<Input>, expression: &Expression) -> Expressi
         inputs.push(Input { label, loaded, entry });
     }
     expression.less(&negative_of)
-}
-
-/// For what has nothing to subtract from: forgets the negative parts, and says which.
-pub fn leave_out(input: &mut Input, notes: &mut Vec<String>) {
-    if input.loaded.negative.take().is_some() {
-        notes.push(format!(
-            "{}: {} left out; repair and the booleans subtract them",
-            input.label,
-            named(&input.entry.negative_parts)
-        ));
-    }
-}
-
-/// "2 negative parts (`a`, `b`)".
-fn named(parts: &[PartEntry]) -> String {
-    let names: Vec<String> =
-        parts.iter().filter(|part| !part.name.is_empty()).map(|part| format!("`{}`", part.name)).collect();
-    let names = if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) };
-    format!("{}{names}", words::plural(parts.len(), "negative part"))
 }

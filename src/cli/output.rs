@@ -1,107 +1,21 @@
 //! Writing: to a file or a stream, verified before it appears under its name.
 
-use std::io::{ErrorKind, Write};
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use super::args::OutputArgs;
-use super::choices::AnyFormat;
-use super::exit::{Exit, Failure};
-use super::input::{hex, is_stream, plain_reason, sha256};
-use super::report::OutputEntry;
+use super::entries::OutputEntry;
+use super::exit::Failure;
 use super::session::{Drafted, Session};
-use super::words;
-use crate::io::{
-    self, DistanceSamples, Format, GridFormat, Loaded, Paint, Unit, WriteError, WriteOptions, WriteProblem,
-};
+use super::side::write_at_once;
+use super::streams::is_direct;
+use super::streams::unwritable;
+use super::streams::{hex, is_stream, sha256};
+use super::target::Target;
+use crate::io::{self, DistanceSamples, GridFormat, Loaded, Paint, WriteError, WriteProblem};
 use crate::mesh::TriMesh;
-
-/// Where a mesh goes, and how it is encoded.
-pub struct Target {
-    /// The path as given.
-    pub path: PathBuf,
-    /// Encoding.
-    pub options: WriteOptions,
-}
-
-impl Target {
-    /// What can be known of the encoding before the work begins.
-    pub fn new(path: &Path, args: &OutputArgs) -> Result<Self, Failure> {
-        let format = match args.out_format.or_else(|| AnyFormat::from_path(path)) {
-            Some(AnyFormat::Mesh(format)) => {
-                check_extension(path, format.name())?;
-                format
-            }
-            Some(AnyFormat::Grid(format)) => {
-                return Err(Failure::usage(format!("{format} holds values over a lattice, and the result is a mesh"))
-                    .hint("stl, obj, ply, off, glb, gltf and 3mf hold meshes; `sdf` and `field` make lattices"));
-            }
-            None if is_stream(path) => {
-                return Err(Failure::usage("standard output has no name that tells its format")
-                    .hint("--out-format says it, for example --out-format stl"));
-            }
-            None => {
-                return Err(Failure::usage(format!("the name {} does not tell its format", path.display()))
-                    .hint("end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or give --out-format"));
-            }
-        };
-        Ok(Self { path: path.to_path_buf(), options: WriteOptions { format, ascii: args.ascii, unit: None } })
-    }
-
-    /// The unit of the mesh that will be written.
-    pub fn set_unit(&mut self, unit: Option<Unit>) {
-        self.options.unit = unit;
-    }
-
-    /// What a user should know of the unit in the file.
-    pub fn unit_note(&self) -> Option<String> {
-        let format = self.options.format;
-        match (format, self.options.unit) {
-            (Format::Glb | Format::Gltf, None) => Some(format!(
-                "{format} is in metres, and the unit of the model is not known: its numbers were written as they are, so 1 reads \
-                 as 1 m; --unit mm, for example, says what they are"
-            )),
-            (Format::Glb | Format::Gltf, Some(unit)) if unit != Unit::Metre => {
-                let factor = words::factor(self.options.factor());
-                Some(format!("{format} is in metres: lengths in {} were written times {factor}", words::several(unit)))
-            }
-            (Format::ThreeMf, None) => Some(
-                "3MF states a unit, and that of the model is not known: its numbers were written as they are and read as millimetres; \
-                 --unit says otherwise"
-                    .into(),
-            ),
-            (Format::Stl | Format::Obj | Format::Ply | Format::Off, Some(unit)) if unit != Unit::Millimetre => Some(format!(
-                "{format} has no place for a unit: its numbers are {}, and most programs will take them for millimetres",
-                words::several(unit)
-            )),
-            _ => None,
-        }
-    }
-}
-
-/// Extensions that say what is in a file, beside those of the formats for meshes and lattices.
-const KNOWN: [&str; 28] = [
-    "png", "jpg", "jpeg", "gif", "bmp", "tif", "tiff", "webp", "svg", "pdf", "json", "html", "xml", "zip", "step",
-    "stp", "iges", "igs", "dxf", "dwg", "fbx", "dae", "3ds", "blend", "amf", "x3d", "wrl", "usd",
-];
-
-/// Refuses a name that says something else than what is written to it.
-pub fn check_extension(path: &Path, format: &str) -> Result<(), Failure> {
-    let extension = path.extension().map_or(String::new(), |extension| extension.to_string_lossy().to_lowercase());
-    let says_something = AnyFormat::from_path(path).is_some() || KNOWN.contains(&extension.as_str());
-    if is_direct(path) || extension == format || !says_something {
-        return Ok(());
-    }
-    let name = path.display();
-    Err(Failure::usage(format!("{name} is named as {extension}, and {format} would be written to it"))
-        .hint(format!("a name that ends in .{format}, such as {}", path.with_extension(format).display())))
-}
-
-/// Whether what is written to `path` goes there at once: a stream, a pipe, a device.
-pub fn is_direct(path: &Path) -> bool {
-    is_stream(path) || path.metadata().is_ok_and(|metadata| !metadata.is_file())
-}
+use crate::progress::Stage;
 
 /// Writes `mesh` with its colours and textures, if it has some, reads it back, and lets `judge` look at what was read. Only when that is content
 /// and the run ends well does the file appear under its name, with those that belong beside it; before, it has a temporary name in the same folder,
@@ -113,7 +27,7 @@ pub fn write_verified<'a, T>(
     session: &Session,
     judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
 ) -> Result<(OutputEntry, T), Failure> {
-    session.progress.stage("write")?;
+    session.progress.stage(Stage::Write)?;
     let paint = paint.into();
     let judge = |read: &Loaded| {
         let verdict = judge(read)?;
@@ -139,7 +53,7 @@ fn write_direct<T>(
 ) -> Result<(OutputEntry, T), Failure> {
     let mut bytes = Vec::new();
     encode(target, mesh, paint, &mut bytes)?;
-    session.progress.stage("verify")?;
+    session.progress.stage(Stage::Verify)?;
     let verdict = judge(&read_back(&bytes, target)?)?;
     session.progress.check()?;
     write_at_once(&target.path, &bytes)?;
@@ -160,26 +74,10 @@ fn write_file<T>(
     buffer.flush().map_err(|e| failed(&e))?;
     drop(buffer);
     file.sync_all().map_err(|e| failed(&e))?;
-    session.progress.stage("verify")?;
+    session.progress.stage(Stage::Verify)?;
     let bytes = std::fs::read(path).map_err(|e| failed(&e))?;
     let verdict = judge(&read_back(&bytes, target)?)?;
     Ok((entry(target, &bytes), verdict))
-}
-
-/// Writes a file that is not read back: a map, a report, a picture.
-pub fn write_side(path: &Path, bytes: &[u8], session: &Session) -> Result<(), Failure> {
-    if is_direct(path) {
-        return write_at_once(path, bytes);
-    }
-    let mut file = session.draft(path)?.file;
-    file.write_all(bytes).and_then(|()| file.sync_all()).map_err(|error| unwritable(path, &error))
-}
-
-fn write_at_once(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    match is_stream(path) {
-        true => write_stream(bytes),
-        false => std::fs::write(path, bytes).map_err(|error| unwritable(path, &error)),
-    }
 }
 
 /// Writes what `encode` makes, in `format`. A regular file is read back and compared by its hash before it appears.
@@ -209,7 +107,7 @@ pub fn write_grid(
         let draft = session.draft(path)?;
         let sha256 = hashed(&mut std::io::BufWriter::with_capacity(1 << 20, &draft.file))?;
         draft.file.sync_all().map_err(|e| failed(&e))?;
-        session.progress.stage("verify")?;
+        session.progress.stage(Stage::Verify)?;
         let found = sha256_of_file(&draft.path, session);
         session.progress.check()?;
         if found.map_err(|e| failed(&e))? != sha256 {
@@ -250,22 +148,6 @@ fn sha256_of_file(path: &Path, session: &Session) -> std::io::Result<String> {
     Ok(hex(&hashing.hash.finalize()))
 }
 
-/// Why there is no file at `path`.
-pub fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
-    let name = if is_stream(path) { "to standard output".into() } else { path.display().to_string() };
-    let reason = match error.kind() {
-        ErrorKind::BrokenPipe => "whoever read it has stopped reading".into(),
-        _ => plain_reason(error),
-    };
-    let failure = Failure::new(Exit::Write, format!("cannot write {name}: {reason}"));
-    match error.kind() {
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
-            failure.hint("room for it, or another folder; what was there before is as it was")
-        }
-        _ => failure,
-    }
-}
-
 /// What it means that a mesh could not be encoded.
 pub fn unencoded(path: &Path, error: &WriteError) -> Failure {
     match &error.problem {
@@ -293,10 +175,4 @@ fn entry(target: &Target, bytes: &[u8]) -> OutputEntry {
         unit: target.options.unit_in_file().map(|unit| unit.to_string()),
         validity: None,
     }
-}
-
-/// Writes `bytes` to standard output.
-pub fn write_stream(bytes: &[u8]) -> Result<(), Failure> {
-    let mut out = std::io::stdout().lock();
-    out.write_all(bytes).and_then(|()| out.flush()).map_err(|error| unwritable(Path::new("-"), &error))
 }

@@ -3,8 +3,9 @@
 use std::borrow::Cow;
 
 use super::exit::Failure;
-use super::output::{self, Target};
 use super::session::Session;
+use super::target::Target;
+use super::{side, streams};
 use crate::io::draft::folder_of;
 use crate::io::{Carried, Colours, Format, Loaded, Paint, TextureMap};
 use crate::mesh::TriMesh;
@@ -50,7 +51,7 @@ impl<'a> Arranged<'a> {
 
 /// What becomes of colours and textures that the format has no place for.
 pub fn lost(mesh: &TriMesh, paint: &Paint<'_>, target: &Target) -> Vec<String> {
-    paint.lost_in(target.options.format, mesh, !output::is_direct(&target.path))
+    paint.lost_in(target.options.format, mesh, !streams::is_direct(&target.path))
 }
 
 /// Whether the file as read back has the colours, as far as its format holds them.
@@ -85,7 +86,7 @@ pub fn check_texture(read: &Loaded, paint: &Paint<'_>) -> Result<(), Failure> {
 
 /// Writes the files of materials and images that belong beside the mesh. They get their names with it.
 pub fn write_beside(target: &Target, texture: &TextureMap, session: &Session) -> Result<(), Failure> {
-    if output::is_direct(&target.path) {
+    if streams::is_direct(&target.path) {
         return Ok(());
     }
     for file in texture.side_files(target.options.format, &target.path) {
@@ -98,11 +99,11 @@ pub fn write_beside(target: &Target, texture: &TextureMap, session: &Session) ->
         if file.is_at(&path) {
             continue;
         }
-        if !session.kept.force && texture.was_read_from(&path).map_err(|error| output::unwritable(&path, &error))? {
+        if !session.kept.force && texture.was_read_from(&path).map_err(|error| streams::unwritable(&path, &error))? {
             let message = format!("{} belongs to the textures of an input and would be overwritten", path.display());
             return Err(Failure::usage(message).hint("another name after -o, or --force"));
         }
-        output::write_side(&path, &file.bytes, session)?;
+        side::write_side(&path, &file.bytes, session)?;
     }
     Ok(())
 }

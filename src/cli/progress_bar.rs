@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::course::Course;
-use crate::progress::Event;
+use crate::progress::{Event, Stage};
 
 /// Where nobody sees a bar, a line comes so often.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
@@ -37,7 +37,7 @@ impl Watched {
         (self.course.lock().unwrap_or_else(PoisonError::into_inner), self.start.elapsed())
     }
 
-    fn show(&self, event: Event<'_>) {
+    fn show(&self, event: Event) {
         let (mut course, now) = self.lock();
         match event {
             Event::Stage(stage) => course.begin(stage, now),
@@ -76,7 +76,7 @@ impl Meter {
             bar.enable_steady_tick(Duration::from_millis(100));
         }
         let told = (!terminal && verbose && !quiet)
-            .then(|| tell_every(BETWEEN_LINES, course.clone(), super::session::eprintln_quietly));
+            .then(|| tell_every(BETWEEN_LINES, course.clone(), super::say::eprintln_quietly));
         Self { bar, course, lines: Mutex::new(told.flatten()) }
     }
 
@@ -85,8 +85,14 @@ impl Meter {
         *self.course.lock().0 = Course::of_frames(frames);
     }
 
+    /// The stages that will come, and the seconds that each may take.
+    pub fn expect(&self, seconds: &[(Stage, f64)]) {
+        let (mut course, now) = self.course.lock();
+        course.expect(seconds, now);
+    }
+
     /// Shows `event`.
-    pub fn show(&self, event: Event<'_>) {
+    pub fn show(&self, event: Event) {
         self.course.show(event);
         if let Event::Stage(_) = event {
             // A bar that is drawn looks at the course: it must not be locked then.
@@ -102,6 +108,7 @@ impl Meter {
 
     /// Takes the bar away, and ends the lines.
     pub fn clear(&self) {
+        self.course.lock().0.finish();
         self.bar.finish_and_clear();
         self.lines.lock().unwrap_or_else(PoisonError::into_inner).take();
     }
@@ -134,7 +141,7 @@ mod tests {
     #[test]
     fn lines_come_in_time_and_end_with_the_run() {
         let course = Watched { course: Arc::new(Mutex::new(Course::of("repair"))), start: Instant::now() };
-        course.show(Event::Stage("vote"));
+        course.show(Event::Stage(Stage::Vote));
         let said = Arc::new(Mutex::new(Vec::new()));
         let saying = said.clone();
         let lines = tell_every(Duration::from_millis(20), course.clone(), move |line| {

@@ -1,30 +1,86 @@
 //! `render IN [AFTER] -o PNG`.
 
+use clap::Args;
 use std::borrow::Cow;
 use std::path::Path;
+use std::path::PathBuf;
 
 use glam::DVec3;
 use serde_json::json;
 
-use super::args::RenderArgs;
 use super::choices::EdgeChoice;
+use super::entries::{OutputEntry, SliceEntry};
+use super::epilogue;
 use super::exit::{Exit, Failure};
 use super::given::{Given, Which};
-use super::input::{self, Input, is_stream};
-use super::limits;
-use super::output::write_side;
-use super::report::{OutputEntry, RunReport};
+use super::input::Input;
+use super::length::parse_size;
+use super::report::RunReport;
+use super::result::RunResult;
 use super::session::Session;
+use super::shared_args::{CommonArgs, InputArgs};
+use super::side::write_side;
 use super::slice::{self, Field, SliceChoice, failure};
+use super::streams::{self, is_stream};
 use crate::io::{Colours, LegendEntry, shown_colours};
 use crate::picture::{EdgeDrawing, Image, Painted, RenderOptions, View, draw_legend, render, render_pair};
+use crate::progress::Stage;
+
+/// `render IN [AFTER] -o PNG`.
+#[derive(Debug, Args)]
+pub struct RenderArgs {
+    /// The mesh to draw, or the grid (VTI, NRRD, NPY, VDB) of which to draw a slice
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// A second mesh or grid, drawn beside the first: meshes from the same point of view, slices of the same plane
+    #[arg(value_name = "AFTER")]
+    pub after: Option<PathBuf>,
+    /// Where to write the PNG
+    #[arg(short, long, value_name = "PNG")]
+    pub output: PathBuf,
+    /// Width of the picture (of each, for two), pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 1200, value_parser = clap::value_parser!(u32).range(16..=16384))]
+    pub width: u32,
+    /// Height, pixels
+    #[arg(long, value_name = "PIXELS", default_value_t = 900, value_parser = clap::value_parser!(u32).range(16..=16384))]
+    pub height: u32,
+    /// From where: iso, front, back, left, right, top, bottom, or the direction to the viewer as X,Y,Z
+    #[arg(long, value_name = "VIEW", default_value = "iso", value_parser = parse_view, allow_hyphen_values = true)]
+    pub view: ViewChoice,
+    /// The y axis points up, not z
+    #[arg(long)]
+    pub y_up: bool,
+    /// Draw a slice: z (through the middle), x=50%, y=1.5 or z=2mm; of meshes, where no grid is given, through their
+    /// signed distance [default: z, for grids]
+    #[arg(long, value_name = "AXIS[=AT]", allow_hyphen_values = true)]
+    pub slice: Option<SliceChoice>,
+    /// Which edges of triangles are drawn
+    #[arg(long, value_enum, default_value_t = EdgeChoice::Sharp)]
+    pub edges: EdgeChoice,
+    /// Do not colour defects
+    #[arg(long)]
+    pub no_defects: bool,
+    /// Refuse grids that would take more memory (500M, 2G)
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    pub max_memory: Option<u64>,
+    /// Write over an input file
+    #[arg(long)]
+    pub force: bool,
+    /// How the input is read.
+    #[command(flatten)]
+    pub reading: InputArgs,
+    /// Flags of every verb.
+    #[command(flatten)]
+    pub common: CommonArgs,
+}
 
 /// Draws one mesh or slice, or two on one sheet.
 pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
-    super::output::check_extension(&args.output, "png")?;
+    super::target::check_extension(&args.output, "png")?;
     let paths: Vec<&Path> = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
-    let mut inputs = report
-        .timed("read", |report| Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings))?;
+    let mut inputs = report.timed(Stage::Read, |report| {
+        Given::read(&paths, &args.reading, args.max_memory, session, &mut report.warnings)
+    })?;
     // What shares one camera, or one plane, must share one unit.
     inputs.common_unit(&args.reading, &mut report.warnings);
     inputs.describe(report);
@@ -37,8 +93,8 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
         "edges": format!("{:?}", args.edges).to_lowercase(), "defects": options.defects,
         "slice": slices.then(|| choice.to_string()),
     });
-    session.progress.stage("draw")?;
-    let images = report.timed("draw", |report| inputs.draw(&options, slices.then_some(&choice), session, report))?;
+    session.progress.stage(Stage::Draw)?;
+    let (images, drawn) = report.timed(Stage::Draw, |_| inputs.draw(&options, slices.then_some(&choice), session))?;
     let image = match <[Image; 1]>::try_from(images) {
         Ok([image]) => image,
         Err(images) => Image::beside(&images),
@@ -49,7 +105,7 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
     let label = if is_stream(&args.output) { "standard output".into() } else { args.output.display().to_string() };
     session.clear_bar();
     session.say(&format!("{label}: {} x {} pixels", image.width, image.height));
-    if options.defects && report.slices.len() < inputs.0.order.len() {
+    if options.defects && drawn.len() < inputs.0.order.len() {
         session.say(
             "open edges red, edges of more than two triangles magenta, intersecting triangles yellow, inner sides rust red",
         );
@@ -59,20 +115,19 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
         let entries: Vec<String> = input.loaded.legend.iter().map(entry).collect();
         session.say(&format!("{}: {}", input.label, entries.join("; ")));
     }
-    for slice in &report.slices {
+    for slice in &drawn {
         session.say(&slice.words(inputs.0.unit_of(&slice.path).as_deref()));
     }
-    report.output = Some(OutputEntry {
+    let output = OutputEntry {
         path: label,
         format: "png".into(),
         bytes: png.len() as u64,
-        sha256: input::sha256(&png),
+        sha256: streams::sha256(&png),
         unit: None,
         validity: None,
-    });
-    let broken = limits::beyond_memory(report, args.max_memory);
-    report.warnings.extend(broken.iter().cloned());
-    Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
+    };
+    report.result = Some(RunResult::Picture { slices: drawn, output });
+    Ok(epilogue::measured(session, report, args.max_memory))
 }
 
 /// What is drawn.
@@ -84,16 +139,15 @@ impl Inputs {
         !self.0.grids.is_empty() || args.slice.is_some()
     }
 
-    /// The images in the order of the inputs.
+    /// The images in the order of the inputs, and what is to be said of slices.
     fn draw(
         &self,
         options: &RenderOptions,
         choice: Option<&SliceChoice>,
         session: &Session,
-        report: &mut RunReport,
-    ) -> Result<Vec<Image>, Failure> {
+    ) -> Result<(Vec<Image>, Vec<SliceEntry>), Failure> {
         let Some(choice) = choice else {
-            return surfaces(&self.0.meshes.iter().collect::<Vec<_>>(), options, session);
+            return Ok((surfaces(&self.0.meshes.iter().collect::<Vec<_>>(), options, session)?, Vec::new()));
         };
         let sliced: Vec<Which> = match self.0.grids.is_empty() {
             true => self.0.order.clone(),
@@ -107,18 +161,18 @@ impl Inputs {
         let size = [options.width, options.height];
         let slices = slice::draw(&fields, choice, size, session)?;
         let mut slices = slices.into_iter();
-        let mut images = Vec::new();
+        let (mut images, mut drawn) = (Vec::new(), Vec::new());
         for which in &self.0.order {
             match (sliced.contains(which).then(|| slices.next()).flatten(), *which) {
                 (Some((image, entry)), _) => {
                     images.push(image);
-                    report.slices.push(entry);
+                    drawn.push(entry);
                 }
                 (None, Which::Mesh(n)) => images.extend(surfaces(&[&self.0.meshes[n]], options, session)?),
                 (None, Which::Grid(_)) => return Err(Failure::internal("a grid was not drawn")),
             }
         }
-        Ok(images)
+        Ok((images, drawn))
     }
 }
 

@@ -1,11 +1,24 @@
 //! `repair IN -o OUT`.
 
-use super::args::RepairArgs;
 use super::exit::{Exit, Failure};
 use super::report::RunReport;
 use super::session::Session;
 use super::solid::{self, Job};
+use super::solid_args::SolidArgs;
 use crate::ldi::Expression;
+use clap::Args;
+use std::path::PathBuf;
+
+/// `repair IN -o OUT`.
+#[derive(Debug, Args)]
+pub struct RepairArgs {
+    /// The mesh to repair; all its shells together are one solid
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// Flags of the pipeline and its output.
+    #[command(flatten)]
+    pub solid: SolidArgs,
+}
 
 /// Repairs one file: all its shells are one operand.
 pub fn run(args: &RepairArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {

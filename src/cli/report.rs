@@ -1,25 +1,23 @@
 //! The report: one JSON object a run, the same for every verb.
 
-use std::path::Path;
 use std::time::Instant;
 
 use serde::Serialize;
 
-use super::args::CommonArgs;
+use super::entries::InputEntry;
+use super::entries::OutputEntry;
 use super::exit::{Exit, Failure};
-use super::input::is_stream;
 use super::machine::peak_memory;
-use super::session::Session;
-use crate::compare::Comparison;
-use crate::decimate::DecimateReport;
-use crate::mesh::{MassProperties, Overhang, Validity};
-use crate::pipeline::{DistancePlan, DistanceReport, FieldReport, Plan, Report, StageTime, ThicknessReport};
+use super::result::RunResult;
+use crate::pipeline::{Report, StageTime};
+use crate::progress::Stage;
 
 /// Raised when a field changes its meaning or goes away; new fields do not raise it.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// The account of one run of the program.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunReport {
     /// Version of this layout.
     pub schema: u32,
@@ -38,48 +36,9 @@ pub struct RunReport {
     pub options: serde_json::Value,
     /// The inputs, in the order given.
     pub inputs: Vec<InputEntry>,
-    /// The estimate, where one was asked for.
+    /// What the verb found and made; nothing of a run that failed before it had found anything.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub plan: Option<PlanEntry>,
-    /// What the pipeline found and did.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub pipeline: Option<Report>,
-    /// What `sdf` found and did.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub distance: Option<DistanceReport>,
-    /// What `field` was made of, one entry for each frame.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub fields: Vec<FieldReport>,
-    /// The lattice that `inspect` looked at.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub grid: Option<super::grids::GridEntry>,
-    /// What `decimate` did.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub decimate: Option<DecimateReport>,
-    /// Centre of mass and moments, for `inspect` of a closed, oriented mesh.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mass: Option<MassProperties>,
-    /// What hangs over, for `inspect`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub overhang: Option<Overhang>,
-    /// What `inspect --thickness` measured.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub thickness: Option<ThicknessReport>,
-    /// The graphics adapters, for `devices`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub devices: Option<super::devices::DeviceReport>,
-    /// What `compare` measured, and how far `decimate` moved the surface.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub comparison: Option<Comparison>,
-    /// The slices that `render` drew.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub slices: Vec<super::slice::SliceEntry>,
-    /// The written file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub output: Option<OutputEntry>,
-    /// The files that `split` has written.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub outputs: Vec<OutputEntry>,
+    pub result: Option<RunResult>,
     /// Sentences a user should read.
     pub warnings: Vec<String>,
     /// Wall-clock seconds of each stage, in order.
@@ -89,70 +48,6 @@ pub struct RunReport {
     /// Largest resident memory, where the system tells it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peak_memory_bytes: Option<u64>,
-}
-
-/// What a run would cost.
-#[derive(Debug, Clone, Copy, Serialize)]
-#[serde(untagged)]
-pub enum PlanEntry {
-    /// Of `repair`, the booleans and `csg`.
-    Solid(Plan),
-    /// Of `sdf`.
-    Distance(DistancePlan),
-}
-
-/// One input in the report.
-#[derive(Debug, Clone, Serialize)]
-pub struct InputEntry {
-    /// The path as given.
-    pub path: String,
-    /// Its name in the expression, for `csg`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub name: Option<String>,
-    /// The format it was read as.
-    pub format: String,
-    /// Size of the file.
-    pub bytes: u64,
-    /// SHA-256 of the file.
-    pub sha256: String,
-    /// The unit the file carries.
-    pub unit: Option<String>,
-    /// Its objects.
-    pub parts: Vec<PartEntry>,
-    /// Its objects that are taken away from the others.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub negative_parts: Vec<PartEntry>,
-    /// What the reader found odd.
-    pub warnings: Vec<String>,
-    /// Its state as read.
-    pub validity: Option<Validity>,
-}
-
-/// An object within a file.
-#[derive(Debug, Clone, Serialize)]
-pub struct PartEntry {
-    /// Its name.
-    pub name: String,
-    /// Its triangles.
-    pub triangles: usize,
-}
-
-/// The output in the report.
-#[derive(Debug, Clone, Serialize)]
-pub struct OutputEntry {
-    /// The path as given.
-    pub path: String,
-    /// The format it was written in.
-    pub format: String,
-    /// Size of the file.
-    pub bytes: u64,
-    /// SHA-256 of the file.
-    pub sha256: String,
-    /// The unit of its numbers, where known.
-    pub unit: Option<String>,
-    /// Its state, read back from the file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub validity: Option<Validity>,
 }
 
 impl RunReport {
@@ -167,20 +62,7 @@ impl RunReport {
             error: None,
             options: serde_json::Value::Null,
             inputs: Vec::new(),
-            plan: None,
-            pipeline: None,
-            distance: None,
-            fields: Vec::new(),
-            grid: None,
-            decimate: None,
-            mass: None,
-            overhang: None,
-            thickness: None,
-            devices: None,
-            comparison: None,
-            slices: Vec::new(),
-            output: None,
-            outputs: Vec::new(),
+            result: None,
             warnings: Vec::new(),
             stages: Vec::new(),
             seconds: 0.0,
@@ -188,12 +70,35 @@ impl RunReport {
         }
     }
 
+    /// The account of a solid, where one was made.
+    pub fn pipeline(&self) -> Option<&Report> {
+        self.result.as_ref().and_then(RunResult::pipeline)
+    }
+
+    /// The file that was written last.
+    pub fn output(&self) -> Option<&OutputEntry> {
+        self.result.as_ref().and_then(RunResult::output)
+    }
+
+    /// Notes the file that the result was written to.
+    pub fn written(&mut self, entry: OutputEntry) {
+        if let Some(result) = &mut self.result {
+            result.written(entry);
+        }
+    }
+
     /// Runs `work` and notes how long it took under `stage`.
-    pub fn timed<T>(&mut self, stage: &'static str, work: impl FnOnce(&mut Self) -> T) -> T {
+    pub fn timed<T>(&mut self, stage: Stage, work: impl FnOnce(&mut Self) -> T) -> T {
         let start = Instant::now();
         let result = work(self);
         self.stages.push(StageTime { stage, seconds: start.elapsed().as_secs_f64() });
         result
+    }
+
+    /// Fills in what the run has taken so far.
+    pub fn measure(&mut self, start: Instant) {
+        self.seconds = start.elapsed().as_secs_f64();
+        self.peak_memory_bytes = peak_memory();
     }
 
     /// Fills in how the run ended.
@@ -205,43 +110,6 @@ impl RunReport {
                 self.error = Some(failure.clone());
             }
         }
-        self.seconds = start.elapsed().as_secs_f64();
-        self.peak_memory_bytes = peak_memory();
+        self.measure(start);
     }
-
-    /// Writes the report where `--json` and `--report` want it: the file first, because a stream cannot be taken back.
-    pub fn emit(&self, common: &CommonArgs, session: &Session) -> Result<(), Failure> {
-        if !common.json && common.report.is_none() {
-            return Ok(());
-        }
-        let mut text = serde_json::to_string_pretty(self)
-            .map_err(|e| Failure::internal(format!("the report cannot be written as JSON: {e}")))?;
-        text.push('\n');
-        if let Some(path) = &common.report {
-            super::output::write_side(path, text.as_bytes(), session)?;
-        }
-        if common.json {
-            super::output::write_stream(text.as_bytes())?;
-        }
-        Ok(())
-    }
-}
-
-/// Refuses two things on standard output, and a report without a name.
-pub fn check_streams<'a>(common: &CommonArgs, made: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
-    if common.json && made.into_iter().any(is_stream) {
-        return Err(Failure::usage("--json and `-o -` both want standard output")
-            .hint("--report FILE.json writes the report to a file"));
-    }
-    match &common.report {
-        Some(report) if is_stream(report) => {
-            Err(Failure::usage("--report wants a file").hint("--json writes the report to standard output"))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Refuses a report that is named as something else.
-pub fn check_name(common: &CommonArgs) -> Result<(), Failure> {
-    common.report.as_ref().map_or(Ok(()), |report| super::output::check_extension(report, "json"))
 }

@@ -5,17 +5,20 @@ use std::path::Path;
 use clap::ValueEnum;
 use serde_json::json;
 
-use super::args::SdfArgs;
-use super::backend;
 use super::choices::SignChoice;
+use super::entries::OutputEntry;
+use super::epilogue;
 use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
-use super::input::{self, Input, is_stream};
+use super::input::{self, Input};
 use super::length::{BandChoice, Scale};
-use super::report::{OutputEntry, PlanEntry, RunReport};
+use super::report::RunReport;
+use super::result::RunResult;
+use super::sdf_args::SdfArgs;
 use super::session::Session;
-use super::summary::{self, Row};
+use super::streams::{self, is_stream};
+use super::table::{self, Row};
 use super::words::{self, UnitName};
-use super::{limits, machine, output};
+use super::{backend, machine, output, summary, target, weights};
 use crate::io::{DistanceSamples, GridFormat, SampleBlocks, Unit};
 use crate::lattice::Slot;
 use crate::mesh::Validity;
@@ -23,17 +26,18 @@ use crate::pipeline::{
     self, DistanceError, DistanceMethod, DistanceOptions, DistanceOutcome, DistancePlan, DistanceReport, DistanceSign,
     LimitError, VoxelSize,
 };
+use crate::progress::Stage;
 
 /// Makes the field of one file.
 pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let format = format(args)?;
-    let mut inputs =
-        report.timed("read", |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
+    let mut inputs = report
+        .timed(Stage::Read, |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     let Some(input) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
-    let validity = report.timed("examine", |_| {
-        session.progress.stage("examine")?;
+    let validity = report.timed(Stage::Examine, |_| {
+        session.progress.stage(Stage::Examine)?;
         input::examine(&input.loaded, session)
     })?;
     let options = options(args, input, unit, &validity)?;
@@ -43,20 +47,19 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
         return plan(input, &options, unit, format, args, report);
     };
     report.warnings.extend(doubts(&options, &validity, format));
-    let outcome = pipeline::distance(&input.loaded.mesh, &options, &session.progress)
+    if let Ok(plan) = pipeline::plan_distance(&input.loaded.mesh, &options) {
+        session.expect(&weights::of_distances(input.loaded.mesh.triangles.len(), plan.seconds, plan.file));
+    }
+    let mut outcome = pipeline::distance(&input.loaded.mesh, &options, &session.progress)
         .map_err(|e| failure(&e, input, &options, unit, args))?;
-    report.stages.extend(outcome.report.stages.iter().cloned());
-    report.output = Some(write(path, &outcome, unit, format, session, report)?);
+    report.stages.append(&mut outcome.report.stages);
+    let output = Some(write(path, &outcome, unit, format, session, report)?);
     let fallback = outcome.report.made_by.as_ref().and_then(|made_by| made_by.fallback.as_ref());
     report.warnings.extend(fallback.map(|reason| format!("the main processor drew the slices: {reason}")));
-    report.distance = Some(outcome.report.clone());
-    let broken = limits::beyond_memory(report, args.max_memory);
-    report.warnings.extend(broken.iter().cloned());
-    report.seconds = session.start.elapsed().as_secs_f64();
-    report.peak_memory_bytes = super::machine::peak_memory();
-    session.clear_bar();
+    report.result = Some(RunResult::Distance { distance: outcome.report.clone(), output });
+    let exit = epilogue::measured(session, report, args.max_memory);
     say(session, report, &outcome.report, &options, unit);
-    Ok(if broken.is_none() { Exit::Done } else { Exit::Limit })
+    Ok(exit)
 }
 
 /// The format of the output; everything about it that can be known before the work begins is checked.
@@ -64,7 +67,7 @@ fn format(args: &SdfArgs) -> Result<Option<GridFormat>, Failure> {
     let Some(path) = args.output.as_deref() else { return Ok(None) };
     let format = match (args.out_format, GridFormat::from_path(path)) {
         (Some(format), _) | (None, Some(format)) => {
-            output::check_extension(path, format.name())?;
+            target::check_extension(path, format.name())?;
             format
         }
         (None, None) if is_stream(path) => {
@@ -82,10 +85,7 @@ fn format(args: &SdfArgs) -> Result<Option<GridFormat>, Failure> {
 fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validity) -> Result<DistanceOptions, Failure> {
     let bounds = input.loaded.mesh.bounds();
     let (diagonal, longest) = bounds.map_or((0.0, 0.0), |b| (b.diagonal(), b.size().max_element()));
-    let voxel = match &args.voxel {
-        Some(length) => VoxelSize::Length(length.resolve(&Scale { unit, diagonal, voxel: None })?),
-        None => VoxelSize::Along(args.resolution),
-    };
+    let voxel = args.voxels.size(unit, diagonal)?;
     let spacing = voxel.spacing(longest);
     let band = match args.band {
         BandChoice::Full => None,
@@ -137,7 +137,7 @@ fn resolved(
     json!({
         "resolution": resolution,
         "voxel": voxel,
-        "voxel_as_given": args.voxel.map(|length| length.to_string()),
+        "voxel_as_given": args.voxels.voxel.map(|length| length.to_string()),
         "band": options.band,
         "band_as_given": args.band.to_string(),
         "method": options.method,
@@ -188,7 +188,7 @@ fn failure(
             Failure::memory(*needed, *allowed, args.max_memory).hint(smaller(input, options, *allowed))
         }
         _ => {
-            let asked = Asked { voxel: args.voxel.is_some(), memory: args.max_memory };
+            let asked = Asked { voxel: args.voxels.voxel.is_some(), memory: args.max_memory };
             Failure::pipeline(error, std::slice::from_ref(&input.label), unit.as_deref(), asked)
         }
     }
@@ -207,10 +207,10 @@ fn plan(
     if format == Some(GridFormat::Vdb) {
         plan.file = tree_bytes(&plan, options);
     }
-    report.plan = Some(PlanEntry::Distance(plan));
+    report.result = Some(RunResult::DistancePlan { plan });
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
-        output::write_stream(summary::table(&plan_rows(&plan, unit.as_deref())).as_bytes())?;
+        streams::write_stream(table::table(&plan_rows(&plan, unit.as_deref())).as_bytes())?;
     }
     match options.max_memory {
         Some(cap) if plan.memory > cap => {
@@ -273,8 +273,8 @@ pub(super) fn write(
         inside: &|brick| bricks.slot(brick) == Slot::Inside,
     };
     let samples = samples(outcome, unit, &plane, &blocks);
-    report.timed("write and verify", |_| {
-        session.progress.stage("write")?;
+    report.timed(Stage::WriteAndVerify, |_| {
+        session.progress.stage(Stage::Write)?;
         output::write_grid(path, &samples, format, session)
     })
 }
@@ -311,14 +311,10 @@ fn say(
         rows.push(("done", format!("slices {}", backend::words(made_by, "drawn"))));
     }
     rows.push(("voxel", summary::voxel(distance.voxel, distance.dims, unit)));
-    if let Some(output) = &report.output {
+    if let Some(output) = report.output() {
         let [low, high] = distance.range.map(|value| words::number(value.into()));
         let range = words::with_unit(&format!("{low} to {high}"), unit);
         rows.push(("result", format!("{}: {range}, negative inside; {}", output.path, words::bytes(output.bytes))));
     }
-    rows.push(summary::time(report));
-    if session.verbose {
-        rows.extend(summary::stages(report));
-    }
-    session.say(summary::table(&rows).trim_end());
+    epilogue::say(session, report, rows);
 }

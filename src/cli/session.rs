@@ -2,20 +2,20 @@
 
 use std::cell::RefCell;
 use std::fs::File;
-use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use super::args::CommonArgs;
 use super::ending::Ending;
 use super::exit::{Exit, Failure};
 use super::files::KeptFiles;
 use super::progress_bar::Meter;
-use super::{machine, output};
+use super::say::eprintln_quietly;
+use super::shared_args::CommonArgs;
+use super::{machine, streams};
 use crate::io::draft::{Draft, flush_folders, publish};
-use crate::progress::Progress;
+use crate::progress::{Progress, Stage};
 
 /// One run.
 pub struct Session {
@@ -86,6 +86,11 @@ impl Session {
         self.meter.expect_frames(frames);
     }
 
+    /// The stages that will come, and the seconds that each may take.
+    pub fn expect(&self, seconds: &[(Stage, f64)]) {
+        self.meter.expect(seconds);
+    }
+
     /// Takes the progress bar away.
     pub fn clear_bar(&self) {
         self.meter.clear();
@@ -94,7 +99,7 @@ impl Session {
     /// A file that [`Session::publish`] will name `path`, and that will be gone if the run ends before.
     pub fn draft(&self, path: &Path) -> Result<Drafted, Failure> {
         let mut state = self.ending.lock();
-        let (draft, file) = Draft::new(path).map_err(|error| output::unwritable(path, &error))?;
+        let (draft, file) = Draft::new(path).map_err(|error| streams::unwritable(path, &error))?;
         let path = draft.temporary().to_owned();
         state.drafts.push(draft);
         Ok(Drafted { file, path })
@@ -109,7 +114,7 @@ impl Session {
     /// Makes a folder for files that [`Session::publish`] will name; it is gone again if the run ends before.
     pub fn make_folder(&self, path: &Path) -> Result<(), Failure> {
         let mut state = self.ending.lock();
-        std::fs::create_dir(path).map_err(|error| output::unwritable(path, &error))?;
+        std::fs::create_dir(path).map_err(|error| streams::unwritable(path, &error))?;
         state.folder = Some(path.to_owned());
         Ok(())
     }
@@ -125,7 +130,7 @@ impl Session {
         let mut state = self.ending.lock();
         let drafts = std::mem::take(&mut state.drafts);
         let targets: Vec<PathBuf> = drafts.iter().map(|draft| draft.target().to_owned()).collect();
-        publish(drafts).map_err(|(number, error)| output::unwritable(&targets[number], &error))?;
+        publish(drafts).map_err(|(number, error)| streams::unwritable(&targets[number], &error))?;
         state.folder = None;
         state.finished = Some(exit);
         drop(state);
@@ -146,28 +151,4 @@ impl Drop for Session {
     fn drop(&mut self) {
         self.discard();
     }
-}
-
-/// `error: ...`, the place, and `hint: ...` on standard error.
-pub fn print_failure(failure: &Failure) {
-    eprintln_quietly(&format!("{} {}", painted("error:", "1;31"), failure.message));
-    if let Some(place) = &failure.place {
-        eprintln_quietly(place);
-    }
-    if let Some(hint) = &failure.hint {
-        eprintln_quietly(&format!("{} {hint}", painted("hint:", "1;36")));
-    }
-}
-
-/// `text` in the ANSI style `code`, on a terminal without `NO_COLOR`.
-pub fn painted(text: &str, code: &str) -> String {
-    let plain = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty())
-        || std::env::var_os("TERM").is_some_and(|v| v == "dumb")
-        || !std::io::stderr().is_terminal();
-    if plain { text.to_string() } else { format!("\x1b[{code}m{text}\x1b[0m") }
-}
-
-/// Like `eprintln!`, but a closed standard error is no reason to panic.
-pub(super) fn eprintln_quietly(line: &str) {
-    let _ = writeln!(std::io::stderr(), "{line}");
 }

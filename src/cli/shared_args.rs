@@ -6,8 +6,26 @@ use std::time::Duration;
 use clap::Args;
 
 use super::choices::AnyFormat;
-use super::length::parse_duration;
+use super::exit::Failure;
+use super::length::{Length, Scale, parse_duration, parse_resolution};
 use crate::io::{Format, Unit};
+use crate::pipeline::VoxelSize;
+
+/// What every `--help` ends with.
+pub const EXIT_CODES: &str = "\
+Exit status:
+  0    done, and verified on the written file
+  1    internal error
+  2    wrong usage
+  3    a promise or a stated limit does not hold; a result that is mostly lost is written only with --keep-partial
+  4    unreadable or empty input, one that the verb cannot take, or nothing is enclosed
+  5    more memory or threads needed than can be had, or than --max-memory allows
+  6    --timeout has passed
+  7    a file or stream cannot be written
+  130  interrupted
+
+IN and OUT may be `-` for standard input and output.
+LEN is 0.4mm, 1in, 1% (of the bounding box diagonal), 2h (voxels) or a plain number in the file's units.";
 
 /// How inputs are read.
 #[derive(Debug, Clone, Args)]
@@ -55,4 +73,25 @@ pub struct CommonArgs {
     /// More on standard error
     #[arg(short, long)]
     pub verbose: bool,
+}
+
+/// The size of voxels.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct VoxelArgs {
+    /// Voxels along the longest side of the bounding box
+    #[arg(long, value_name = "N", default_value_t = 256, value_parser = parse_resolution, conflicts_with = "voxel")]
+    pub resolution: u32,
+    /// Size of a voxel, instead of --resolution
+    #[arg(long, value_name = "LEN", allow_hyphen_values = true)]
+    pub voxel: Option<Length>,
+}
+
+impl VoxelArgs {
+    /// The size that is asked for, for a model in `unit` whose bounding box has this diagonal, model units.
+    pub fn size(&self, unit: Option<Unit>, diagonal: f64) -> Result<VoxelSize, Failure> {
+        match self.voxel {
+            Some(length) => Ok(VoxelSize::Length(length.resolve(&Scale { unit, diagonal, voxel: None })?)),
+            None => Ok(VoxelSize::Along(self.resolution)),
+        }
+    }
 }

@@ -5,13 +5,14 @@ use std::path::Path;
 use std::str::FromStr;
 
 use glam::DVec3;
-use serde::Serialize;
 
+use super::entries::InputEntry;
+use super::entries::SliceEntry;
 use super::exit::Failure;
 use super::input::{self, Input};
 use super::length::QuantityError;
-use super::report::InputEntry;
 use super::session::Session;
+use super::streams;
 use super::words::{self, UnitName};
 use crate::io::{FileProblem, GridFile, Unit, read_grid_within};
 use crate::mesh::Bounds;
@@ -128,10 +129,10 @@ pub fn grid_of(
     max_memory: Option<u64>,
     notes: &mut Vec<String>,
 ) -> Result<GridInput, Failure> {
-    let name = (!input::is_stream(path)).then_some(path);
+    let name = (!streams::is_stream(path)).then_some(path);
     let file = read_grid_within(bytes, None, name, max_memory).map_err(|error| match *error.problem {
         FileProblem::Memory { needed, allowed } => {
-            let hint = format!("for {} alone; a larger --max-memory, or a coarser lattice", input::label(path));
+            let hint = format!("for {} alone; a larger --max-memory, or a coarser lattice", streams::label(path));
             Failure::memory(needed, allowed, max_memory).hint(hint)
         }
         _ => match error.hint() {
@@ -139,14 +140,14 @@ pub fn grid_of(
             None => Failure::input(error.to_string()),
         },
     })?;
-    let label = input::label(path);
+    let label = streams::label(path);
     notes.extend(file.warnings.iter().map(|warning| format!("{label}: {warning}")));
     let entry = InputEntry {
         path: label,
         name: None,
         format: file.format.to_string(),
         bytes: bytes.len() as u64,
-        sha256: input::sha256(bytes),
+        sha256: streams::sha256(bytes),
         unit: file.unit.map(|unit| unit.to_string()),
         parts: Vec::new(),
         negative_parts: Vec::new(),
@@ -195,23 +196,6 @@ impl<'a> Field<'a> {
         let value = Box::new(move |p| exact.at(p).map_or(f64::NAN, |nearest| nearest.signed));
         Ok(Self { label: &input.label, unit: input.loaded.unit, bounds, value })
     }
-}
-
-/// A slice in the report.
-#[derive(Debug, Clone, Serialize)]
-pub struct SliceEntry {
-    /// The input.
-    pub path: String,
-    /// The axis that the plane is across: `x`, `y` or `z`.
-    pub axis: &'static str,
-    /// Where on the axis, model units.
-    pub at: f64,
-    /// The smallest and the largest value seen, model units; nothing where the plane misses the grid.
-    pub range: Option<[f64; 2]>,
-    /// How far from zero colours are full, model units.
-    pub full: f64,
-    /// From one line to the next, model units.
-    pub step: f64,
 }
 
 impl SliceEntry {

@@ -5,21 +5,26 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::args::SolidArgs;
 use super::change::{self, Change, Changed};
+use super::entries::OutputEntry;
+use super::epilogue;
 use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
 use super::input::{self, Input};
 use super::length::{Scale, Simplify};
-use super::output::{Target, write_verified};
+use super::output::write_verified;
 use super::paint::{self, Arranged};
-use super::report::{PlanEntry, RunReport};
+use super::report::RunReport;
+use super::result::RunResult;
 use super::session::Session;
-use super::{backend, doubts, keep, limits, machine, map, negative, summary, words};
+use super::solid_args::SolidArgs;
+use super::target::Target;
+use super::{backend, doubts, keep, limits, machine, map, negative, summary, table, weights, words};
 use crate::fit::{FitOptions, rounded};
 use crate::io::{Colours, Format, Loaded, Paint, Unit};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, TriMesh, Validity, validate};
-use crate::pipeline::{self, Advice, Operand, Options, Precision, VoxelSize};
+use crate::pipeline::{self, Advice, Operand, Options, Precision, VoxelSize, Work};
+use crate::progress::Stage;
 
 /// Meshes and what is to be made of them.
 pub struct Job<'a> {
@@ -45,7 +50,7 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
     let mut target = args.output.as_deref().map(|path| Target::new(path, &args.writing)).transpose()?;
     args.map.as_deref().map_or(Ok(()), super::compare::check_map)?;
     let mut inputs = report
-        .timed("read", |report| input::read_operands(&job.paths, &args.reading, session, &mut report.warnings))?;
+        .timed(Stage::Read, |report| input::read_operands(&job.paths, &args.reading, session, &mut report.warnings))?;
     for (input, name) in inputs.iter_mut().zip(&job.names) {
         input.entry.name = Some(name.clone());
     }
@@ -70,10 +75,7 @@ fn options(
 ) -> Result<(Options, Scale), Failure> {
     let bounds = inputs.iter().filter_map(|input| input.loaded.mesh.bounds()).reduce(|a, b| a.union(&b));
     let diagonal = bounds.as_ref().map_or(0.0, Bounds::diagonal);
-    let voxel = match &args.voxel {
-        Some(length) => VoxelSize::Length(length.resolve(&Scale { unit, diagonal, voxel: None })?),
-        None => VoxelSize::Along(args.resolution),
-    };
+    let voxel = args.voxels.size(unit, diagonal)?;
     let longest = bounds.map_or(0.0, |b| b.size().max_element());
     let scale = Scale { unit, diagonal, voxel: Some(voxel.spacing(longest)) };
     let options = Options {
@@ -114,8 +116,8 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
     json!({
         "resolution": resolution,
         "voxel": voxel,
-        "preset": super::preset::words(args),
-        "voxel_as_given": args.voxel.map(|length| length.to_string()),
+        "preset": args.preset_in_words(),
+        "voxel_as_given": args.voxels.voxel.map(|length| length.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
         "vote": options.vote,
@@ -135,7 +137,12 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
 pub(super) fn failure(error: &impl Advice, inputs: &[Input], unit: Option<Unit>, args: &SolidArgs) -> Failure {
     let labels: Vec<String> = inputs.iter().map(|input| input.label.clone()).collect();
     let unit = unit.map(|unit| unit.to_string());
-    Failure::pipeline(error, &labels, unit.as_deref(), Asked { voxel: args.voxel.is_some(), memory: args.max_memory })
+    Failure::pipeline(
+        error,
+        &labels,
+        unit.as_deref(),
+        Asked { voxel: args.voxels.voxel.is_some(), memory: args.max_memory },
+    )
 }
 
 fn plan(
@@ -156,11 +163,11 @@ fn plan(
         (plan, _) => plan.map_err(|e| failed(&e)),
     };
     let plan = planned(options)?;
-    report.plan = Some(PlanEntry::Solid(plan));
+    report.result = Some(RunResult::Plan { plan });
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
-        let text = summary::table(&summary::plan(&plan, unit.as_deref()));
-        super::output::write_stream(text.as_bytes())?;
+        let text = table::table(&summary::plan(&plan, unit.as_deref()));
+        super::streams::write_stream(text.as_bytes())?;
     }
     match options.max_memory {
         Some(cap) if plan.memory > cap => {
@@ -184,14 +191,18 @@ fn make(
 ) -> Result<Exit, Failure> {
     let args = job.args;
     let unit = scale.unit;
-    report.timed("examine", |report| {
-        session.progress.stage("examine")?;
+    report.timed(Stage::Examine, |report| {
+        session.progress.stage(Stage::Examine)?;
         for (input, entry) in inputs.iter().zip(&mut report.inputs) {
             entry.validity = Some(input::examine(&input.loaded, session)?);
         }
         Ok::<(), Failure>(())
     })?;
     let operands: Vec<Operand<'_>> = inputs.iter().map(|input| (&input.loaded).into()).collect();
+    let meshes: Vec<&TriMesh> = operands.iter().map(|operand| operand.mesh).collect();
+    if let Ok(work) = Work::of(&meshes, options) {
+        session.expect(&weights::of_solid(report.verb, &work, options.fit.as_ref()));
+    }
     let made = pipeline::boolean(operands.iter().copied(), expression, options, &session.progress);
     let failed = |e: &dyn Advice| failure(&e, inputs, unit, args);
     let Changed { mut outcome, mut canal_of } = match job.change {
@@ -207,25 +218,24 @@ fn make(
             canal_of = left.into_iter().map(|t| canal_of[t]).collect();
         }
     }
-    report.stages.extend(outcome.report.stages.iter().cloned());
+    report.stages.append(&mut outcome.report.stages);
     report.warnings.extend(outcome.report.warnings.iter().map(ToString::to_string));
-    report.pipeline = Some(outcome.report.clone());
+    report.result = Some(RunResult::solid(outcome.report.clone()));
     let lost = limits::lost(report);
     let writes = target.is_some() || args.map.is_some();
     let withheld = writes && !lost.is_empty() && !args.keeps_partial();
     if let Some(path) = args.map.as_ref().filter(|_| !withheld) {
-        report.timed("map", |_| map::write(path, &outcome, &operands, &canal_of, session))?;
+        report.timed(Stage::Map, |_| map::write(path, &outcome, &operands, &canal_of, session))?;
     }
     if let Some(target) = target.filter(|_| !withheld) {
         let paint = Paint { colours: outcome.colours.as_ref(), texture: outcome.texture.as_ref(), beside: None };
-        write(&outcome.solid, paint, target, session, report)?;
+        let written = write(&outcome.solid, paint, target, session, report)?;
+        report.written(written);
     }
-    let beyond: Vec<String> =
-        limits::guessed(report).into_iter().chain(limits::beyond_memory(report, args.max_memory)).collect();
-    report.warnings.extend(beyond.iter().chain(lost.iter().filter(|_| !withheld)).cloned());
-    report.seconds = session.start.elapsed().as_secs_f64();
-    report.peak_memory_bytes = super::machine::peak_memory();
-    session.clear_bar();
+    let guessed = limits::guessed(report);
+    report.warnings.extend(guessed.iter().cloned());
+    let exit = epilogue::measured(session, report, args.max_memory);
+    report.warnings.extend(lost.iter().filter(|_| !withheld).cloned());
     let name = unit.map(|unit| unit.to_string());
     summary::say(session, report, name.as_deref());
     change::list(job.change, report, &args.common, name.as_deref())?;
@@ -233,7 +243,7 @@ fn make(
         session.speak();
         return Err(keep::withheld(&lost, args.output.as_deref(), &doubts::better(report, name.as_deref())));
     }
-    Ok(if beyond.is_empty() && lost.is_empty() { Exit::Done } else { Exit::Limit })
+    Ok(if guessed.is_none() && lost.is_empty() { exit } else { Exit::Limit })
 }
 
 /// Writes the result and judges the written file.
@@ -243,7 +253,7 @@ pub(super) fn write<'a>(
     target: &Target,
     session: &Session,
     report: &mut RunReport,
-) -> Result<(), Failure> {
+) -> Result<OutputEntry, Failure> {
     let paint = paint.into();
     report.warnings.extend(paint::lost(mesh, &paint, target));
     let arranged = Arranged::new(mesh, &paint, target.options.format);
@@ -255,13 +265,12 @@ pub(super) fn write<'a>(
     let of_unit = target.unit_note().filter(|note| !report.warnings.contains(note));
     report.warnings.extend(of_unit);
     let factor = target.options.factor();
-    let (entry, validity) = report.timed("write and verify", |_| {
+    let (entry, validity) = report.timed(Stage::WriteAndVerify, |_| {
         write_verified(target, &stored, arranged.paint(), session, |read| {
             judge(read, (&stored, factor), moved, session)
         })
     })?;
-    report.output = Some(super::report::OutputEntry { validity: Some(validity), ..entry });
-    Ok(())
+    Ok(OutputEntry { validity: Some(validity), ..entry })
 }
 
 /// The mesh with the numbers that a format holds, and how far the farthest vertex moves for it, model units.

@@ -5,21 +5,27 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
-use super::args::{CommonArgs, InputArgs, OutputArgs};
 use super::choices::AnyFormat;
 use super::convert::{check_close, losses, state};
+use super::entries::OutputEntry;
 use super::exit::{Exit, Failure};
 use super::files::{self, Made};
-use super::input::{self, Input, is_stream};
-use super::output::{Target, write_verified};
+use super::input::{self, Input};
+use super::output::write_verified;
 use super::paint::{self, Arranged};
-use super::report::{OutputEntry, RunReport};
+use super::report::RunReport;
+use super::result::RunResult;
 use super::session::Session;
-use super::summary::{self, Row};
+use super::shared_args::{CommonArgs, InputArgs, OutputArgs};
+use super::streams::is_stream;
+use super::summary;
+use super::table::{self, Row};
+use super::target::Target;
 use super::words::{self, UnitName};
 use crate::io::{Colours, Format, Loaded, Paint, Part, Unit, WriteOptions};
 use crate::ldi::Operands;
 use crate::mesh::{Submesh, ValidateOptions, validate};
+use crate::progress::Stage;
 use crate::shells::{bodies, shells};
 
 /// The name of files in a folder, before their numbers.
@@ -63,15 +69,15 @@ struct Piece {
 /// Writes every body of one file into a file of its own, the largest first.
 pub fn run(args: &SplitArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let names = Names::new(args)?;
-    let mut inputs =
-        report.timed("read", |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
+    let mut inputs = report
+        .timed(Stage::Read, |report| input::read_all(&[&args.input], &args.reading, session, &mut report.warnings))?;
     let unit = input::common_unit(&mut inputs, &args.reading, &mut report.warnings);
     report.inputs = inputs.iter().map(|input| input.entry.clone()).collect();
     let Some(input) = inputs.pop() else { return Err(Failure::internal("nothing was read")) };
     let format = names.format(args, input.loaded.format);
     let look = ValidateOptions { self_intersections: false, ..input.loaded.validate_options() };
     report.inputs[0].validity = Some(validate(&input.loaded.mesh, &look, &session.progress)?);
-    let pieces = report.timed("split", |_| pieces(&input, session))?;
+    let pieces = report.timed(Stage::Split, |_| pieces(&input, session))?;
     let options = WriteOptions { format, ascii: args.writing.ascii, unit };
     let targets: Vec<Target> =
         (0..pieces.len()).map(|n| Target { path: names.path(n, pieces.len(), format), options }).collect();
@@ -89,9 +95,10 @@ pub fn run(args: &SplitArgs, session: &Session, report: &mut RunReport) -> Resul
         targets.iter().map(|t| Made { flag: "-o", path: t.path.clone(), force: args.writing.force }).collect();
     files::check(&[&args.input], &made)?;
     files::prepare(&made)?;
-    let lost = report.timed("write and verify", |report| write(&pieces, &targets, session, report))?;
+    let (outputs, lost) = report.timed(Stage::WriteAndVerify, |report| write(&pieces, &targets, session, report))?;
     session.clear_bar();
-    say(session, report, &pieces, unit);
+    say(session, report, (&pieces, &outputs), unit);
+    report.result = Some(RunResult::Bodies { outputs });
     Ok(if lost { Exit::Limit } else { Exit::Done })
 }
 
@@ -151,7 +158,7 @@ impl Names {
 
 /// The bodies, the largest first.
 fn pieces(input: &Input, session: &Session) -> Result<Vec<Piece>, Failure> {
-    session.progress.stage("split")?;
+    session.progress.stage(Stage::Split)?;
     let loaded = &input.loaded;
     let mesh = &loaded.mesh;
     // Shared places make one surface where the format cannot say it otherwise.
@@ -201,9 +208,14 @@ fn paint_of(loaded: &Loaded) -> Paint<'_> {
     Paint { colours: loaded.colours.as_ref(), texture: loaded.texture.as_ref(), beside: None }
 }
 
-/// Writes and verifies all files; whether rounding to the numbers of the format has lost something.
-fn write(pieces: &[Piece], targets: &[Target], session: &Session, report: &mut RunReport) -> Result<bool, Failure> {
-    let mut lost = Vec::new();
+/// Writes and verifies all files; also, whether rounding to the numbers of the format has lost something.
+fn write(
+    pieces: &[Piece],
+    targets: &[Target],
+    session: &Session,
+    report: &mut RunReport,
+) -> Result<(Vec<OutputEntry>, bool), Failure> {
+    let (mut outputs, mut lost) = (Vec::new(), Vec::new());
     for (n, (piece, target)) in pieces.iter().zip(targets).enumerate() {
         let loaded = &piece.loaded;
         let before = state(&loaded.mesh, session)?;
@@ -215,7 +227,7 @@ fn write(pieces: &[Piece], targets: &[Target], session: &Session, report: &mut R
         })?;
         let path = &entry.path;
         lost.extend(losses(&before, &after).into_iter().map(|sentence| format!("{path}: {sentence}")));
-        report.outputs.push(OutputEntry { validity: Some(after), ..entry });
+        outputs.push(OutputEntry { validity: Some(after), ..entry });
         session.progress.share((n + 1) as f32 / pieces.len() as f32);
     }
     if let (Some(Piece { loaded, .. }), Some(target)) = (pieces.first(), targets.first()) {
@@ -223,10 +235,10 @@ fn write(pieces: &[Piece], targets: &[Target], session: &Session, report: &mut R
         report.warnings.extend(target.unit_note());
     }
     report.warnings.extend(lost.iter().cloned());
-    Ok(!lost.is_empty())
+    Ok((outputs, !lost.is_empty()))
 }
 
-fn say(session: &Session, report: &RunReport, pieces: &[Piece], unit: Option<Unit>) {
+fn say(session: &Session, report: &RunReport, (pieces, outputs): (&[Piece], &[OutputEntry]), unit: Option<Unit>) {
     let unit = unit.map(|unit| unit.to_string());
     let unit: UnitName<'_> = unit.as_deref();
     let mut rows: Vec<Row> = summary::input_rows(report).into_iter().filter(|(label, _)| *label == "input").collect();
@@ -236,7 +248,7 @@ fn say(session: &Session, report: &RunReport, pieces: &[Piece], unit: Option<Uni
         n => format!(", with {} inside", words::plural(n, "void")),
     };
     rows.push(("done", format!("{}{with_voids}", words::plural(pieces.len(), "body"))));
-    for (piece, output) in pieces.iter().zip(&report.outputs).take(LISTED) {
+    for (piece, output) in pieces.iter().zip(outputs).take(LISTED) {
         let triangles = words::plural(piece.loaded.mesh.triangles.len(), "triangle");
         let closed = output.validity.as_ref().is_some_and(|state| state.is_closed());
         let size = match closed {
@@ -249,5 +261,5 @@ fn say(session: &Session, report: &RunReport, pieces: &[Piece], unit: Option<Uni
         rows.push(("result", format!("and {} more", words::count(pieces.len() - LISTED))));
     }
     rows.push(summary::time(report));
-    session.say(summary::table(&rows).trim_end());
+    session.say(table::table(&rows).trim_end());
 }

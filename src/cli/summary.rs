@@ -1,36 +1,21 @@
 //! What a run says to a person: a few aligned lines, made from the report.
 
 use super::course::in_words;
+use super::entries::InputEntry;
 use super::input::Input;
-use super::report::{InputEntry, RunReport};
+use super::report::RunReport;
 use super::session::Session;
+use super::table::{Row, table};
 use super::words::{self, UnitName};
-use super::{doubts, dropped};
+use super::{done, doubts, dropped};
 use crate::io::{Loaded, Unit};
 use crate::mesh::Validity;
-use crate::morphology::Operation;
-use crate::pipeline::{Plan, Report, ThickenReport, TriangleKind};
-
-/// A label and what stands behind it; rows of one block are aligned.
-pub type Row = (&'static str, String);
-
-/// The rows as aligned lines. Rows that follow a row of the same label go without it.
-pub fn table(rows: &[Row]) -> String {
-    let width = rows.iter().map(|(label, _)| label.chars().count()).max().unwrap_or(0);
-    let mut before = "";
-    rows.iter().fold(String::new(), |mut text, (label, value)| {
-        let shown = if *label == before { "" } else { label };
-        before = label;
-        text.push_str(format!("{shown:width$}  {value}").trim_end());
-        text.push('\n');
-        text
-    })
-}
+use crate::pipeline::{Plan, Report};
 
 /// Says what was wrong, what was done and what came out.
 pub fn say(session: &Session, report: &RunReport, unit: UnitName<'_>) {
     session.say(table(&rows(report, unit)).trim_end());
-    if let Some(pipeline) = report.pipeline.as_ref().filter(|_| session.verbose) {
+    if let Some(pipeline) = report.pipeline().filter(|_| session.verbose) {
         session.say(table(&details(report, pipeline, unit)).trim_end());
     }
 }
@@ -38,8 +23,8 @@ pub fn say(session: &Session, report: &RunReport, unit: UnitName<'_>) {
 fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
     let mut rows = input_rows(report);
     rows.extend(report.options["preset"].as_str().map(|text| ("preset", text.to_owned())));
-    if let Some(pipeline) = &report.pipeline {
-        rows.extend(done(pipeline, unit).into_iter().map(|text| ("done", text)));
+    if let Some(pipeline) = report.pipeline() {
+        rows.extend(done::done(pipeline, unit).into_iter().map(|text| ("done", text)));
         if pipeline.lattice {
             rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
         }
@@ -53,7 +38,7 @@ fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
 
 /// The mesh that was written.
 pub fn result_rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
-    let Some((output, validity)) = report.output.as_ref().and_then(|o| Some((o, o.validity.as_ref()?))) else {
+    let Some((output, validity)) = report.output().and_then(|o| Some((o, o.validity.as_ref()?))) else {
         return Vec::new();
     };
     // The file may be in another unit than the model is told of in.
@@ -114,88 +99,6 @@ fn wrong(input: &InputEntry) -> Vec<String> {
         Some(validity) => validity.problems().iter().map(|problem| problem.trim_end_matches('.').to_string()).collect(),
         None => Vec::new(),
     }
-}
-
-fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
-    let sum = |field: fn(&crate::orient::OrientReport) -> usize| pipeline.orient.iter().map(field).sum::<usize>();
-    let mut parts = Vec::new();
-    let mut add = |n: usize, word: &str, what: &str| {
-        if n > 0 {
-            parts.push(format!("{} {what}", words::plural(n, word)));
-        }
-    };
-    add(sum(|o| o.degenerate_dropped), "triangle", "without area dropped");
-    add(sum(|o| o.duplicates_dropped), "repeated triangle", "dropped");
-    add(sum(|o| o.both_sided), "triangle", "present in both directions counted once");
-    add(sum(|o| o.flipped_in_patches), "triangle", "turned over to agree with the neighbours");
-    add(sum(|o| o.flipped_patches), "patch", "turned over as a whole");
-    if pipeline.ldi.silent_rays > 0 {
-        let share = words::percent(pipeline.ldi.silent_rays, pipeline.ldi.rays);
-        parts.push(format!("{share} of the test rays met a hole or a crack, where those in other directions decided"));
-    }
-    parts.extend(kept(pipeline));
-    if let Some(fit) = pipeline.fit.as_ref().filter(|fit| fit.kept < fit.of) {
-        let points = words::plural(fit.inserted + fit.moved, "point");
-        let given_up = match fit.given_up {
-            0 => String::new(),
-            n => format!("; {} left rough, where no sharp edge could be fitted", words::plural(n, "place")),
-        };
-        parts.push(format!("{points} set on edges and corners{given_up}"));
-    }
-    if let Some(canals) = pipeline.canals.as_ref().filter(|canals| !canals.removed.is_empty()) {
-        let volume = pipeline.morphology.as_ref().map(|m| words::percent_change(m.volume_before, m.volume_after));
-        let (filled, all) = (words::count(canals.removed.len()), words::plural(canals.canals.len(), "canal"));
-        parts.push(format!("{filled} of {all} filled (--map shows where): volume {}", volume.unwrap_or_default()));
-    } else if let Some(change) = &pipeline.morphology {
-        let by = words::length(change.radius, unit);
-        let word = match change.operation {
-            Operation::Dilate => "grown by",
-            Operation::Erode => "shrunk by",
-            Operation::Close => "closed by a ball of",
-            Operation::Open => "opened by a ball of",
-        };
-        let volume = words::percent_change(change.volume_before, change.volume_after);
-        parts.push(format!("{word} {by}: volume {volume}; {} new", words::plural(change.made, "triangle")));
-    } else if let Some(hollow) = &pipeline.hollow {
-        parts.extend(super::hollow::done(hollow, unit));
-    } else if let Some(thick) = &pipeline.thicken {
-        parts.push(thickened(thick, pipeline.closed_triangles, unit));
-    }
-    parts
-}
-
-/// What stayed as it is.
-fn kept(pipeline: &Report) -> Vec<String> {
-    let standing = &pipeline.standing;
-    let mut parts = Vec::new();
-    if standing.left_out > 0 {
-        let shells = words::plural(standing.left_out, "closed surface");
-        parts.push(format!("{shells} left out, inside of others or outside of the result"));
-    }
-    let counts = &pipeline.triangles;
-    parts.push(match (counts.rebuilt, counts.made_up) {
-        (0, 0) => "every triangle was kept as it is".into(),
-        _ => {
-            let of = |kind: TriangleKind| format!("{} {}", words::count(counts.count(kind)), kind.word());
-            format!("of its triangles {} (--map shows which)", TriangleKind::ALL.map(of).join(", "))
-        }
-    });
-    parts
-}
-
-fn thickened(thick: &ThickenReport, made: usize, unit: UnitName<'_>) -> String {
-    let least = words::length(thick.least, unit);
-    if thick.thin_area == 0.0 && thick.sheet_area == 0.0 {
-        return format!("nothing is thinner than {least}");
-    }
-    let sheets = if thick.sheet_area > 0.0 { " and open sheets" } else { "" };
-    let volume = if thick.volume_before > 0.0 {
-        format!("volume {}", words::percent_change(thick.volume_before, thick.volume_after))
-    } else {
-        "there was no solid before".into()
-    };
-    let made = words::plural(made, "triangle");
-    format!("walls{sheets} grown to {least}: {volume}; {made} new")
 }
 
 /// The voxel size, and how many of them.
@@ -342,15 +245,4 @@ pub fn size_doubts(loaded: &Loaded, unit: Option<Unit>) -> Vec<String> {
         doubts.push("it is flat: it has no extent along one axis".into());
     }
     doubts
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn rows_are_aligned_and_repeated_labels_left_out() {
-        let rows: Vec<Row> = vec![("a", "one".into()), ("long", "two".into()), ("long", "three".into())];
-        assert_eq!(table(&rows), "a     one\nlong  two\n      three\n");
-    }
 }

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::distance::percentile;
 use super::surface::Frame;
 use crate::mesh::{ClosestTree, Pseudonormals, TriMesh};
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 
 /// Points that one thread searches before it looks whether it should stop.
 const CHUNK: usize = 1 << 12;
@@ -53,7 +53,7 @@ pub fn deviation_map(
     reference: &TriMesh,
     progress: &Progress,
 ) -> Result<Option<DeviationMap>, Stopped> {
-    progress.stage("map")?;
+    progress.stage(Stage::Map)?;
     let frame = Frame::around(reference, mesh);
     let mut reference = frame.scaled(reference);
     let area = |corners: [glam::DVec3; 3]| (corners[1] - corners[0]).cross(corners[2] - corners[0]).length();

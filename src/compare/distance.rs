@@ -14,6 +14,7 @@ const CHUNK: usize = 1 << 12;
 /// Distances from points of one mesh to the nearest points of the other, model units. Mean, RMS and p99 are over
 /// area-uniform samples, the largest over these and all vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Distances {
     /// The mean distance.
     pub mean: f64,
@@ -32,6 +33,7 @@ pub struct Distances {
 /// Distances both ways, model units: the mean of the means, the root of the mean of the mean squares, and the larger
 /// of each p99 and maximum.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Symmetric {
     /// The mean distance.
     pub mean: f64,
@@ -47,6 +49,7 @@ pub struct Symmetric {
 
 /// Distances relative to the diagonal of A's bounding box.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Relative {
     /// The mean distance.
     pub mean: f64,

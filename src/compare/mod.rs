@@ -14,7 +14,7 @@ mod surface;
 use serde::Serialize;
 
 use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 
 pub use deviation::{DeviationMap, deviation_map};
 pub use distance::{Distances, Relative, Symmetric};
@@ -47,6 +47,7 @@ impl Default for CompareOptions {
 /// What [`compare`] finds. A is the reference. Triangles without area take no part, except that they count in
 /// `triangles`. A measure is `None` where there is nothing to measure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Comparison {
     /// The measures of A.
     pub a: Measures,
@@ -74,6 +75,7 @@ pub struct Comparison {
 
 /// Measures of one mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Measures {
     /// All triangles, also those without area.
     pub triangles: usize,
@@ -98,6 +100,7 @@ impl Measures {
 
 /// How the normals differ.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Normals {
     /// Whether the side counts. Where neighbours in A disagree about the outside it does not: a normal and its
     /// opposite are then the same.
@@ -110,7 +113,7 @@ pub struct Normals {
 
 /// Compares `b` with the reference `a`.
 pub fn compare(a: &TriMesh, b: &TriMesh, options: &CompareOptions, progress: &Progress) -> Result<Comparison, Stopped> {
-    progress.stage("compare")?;
+    progress.stage(Stage::Compare)?;
     let counts = ValidateOptions { self_intersections: false, weld: true };
     let [state_a, state_b] = [validate(a, &counts, progress)?, validate(b, &counts, progress)?];
     let samples = options.samples.max(1);

@@ -43,6 +43,7 @@ pub struct DecimateOptions {
 
 /// What [`decimate`] did.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DecimateReport {
     /// Triangles before.
     pub before: usize,

@@ -61,6 +61,7 @@ impl Default for FitOptions {
 
 /// What [`fit`] did.
 #[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FitReport {
     /// Triangles of the source that were kept as they are, before simplification.
     pub kept: usize,

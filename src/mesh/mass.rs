@@ -8,6 +8,7 @@ use super::TriMesh;
 
 /// Integrals over a solid of density 1, so that its mass is its volume. Model units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MassProperties {
     /// The volume.
     pub volume: f64,
@@ -74,6 +75,7 @@ fn column(p: DVec3) -> nalgebra::Vector3<f64> {
 
 /// How much of a surface hangs over, when it is printed as it stands, z up.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Overhang {
     /// The angle from the vertical beyond which a surface that faces down hangs over, degrees.
     pub degrees: f64,

@@ -32,6 +32,7 @@ impl Default for ValidateOptions {
 /// Counts and measures of a mesh. Triangles with a repeated index count as degenerate and take no part in anything
 /// else; triangles without an area count as degenerate too, but do take part in the topology.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Validity {
     /// Vertices, used or not.
     pub vertices: usize,

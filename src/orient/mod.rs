@@ -6,7 +6,7 @@ mod patches;
 mod sides;
 
 pub use clean::{Cleaned, clean};
-pub use patches::{Patches, orient_patches};
+pub use patches::{PatchId, Patches, orient_patches};
 pub use sides::orient_sides;
 
 use serde::Serialize;
@@ -23,6 +23,7 @@ pub enum OrientMode {
 
 /// What cleaning and orientation did.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OrientReport {
     /// Triangles that were dropped because they have no area or a repeated vertex.
     pub degenerate_dropped: usize,

@@ -4,6 +4,8 @@ use super::{
     BooleanError, CanalError, DistanceError, FieldError, HollowError, LimitError, MorphologyError, ThickenError,
     ThicknessError,
 };
+use crate::field::FillError;
+use crate::field::language::BuildError;
 use crate::mesh::NotSolid;
 use crate::progress::Stopped;
 
@@ -159,21 +161,31 @@ impl Advice for DistanceError {
     }
 }
 
+impl Advice for BuildError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::Stopped(stopped) | Self::Fill(FillError::Stopped(stopped)) => Trouble::Stopped(*stopped),
+            Self::Fill(FillError::Memory { .. }) => Trouble::NoRoom,
+            Self::Lattice { .. } => Trouble::Voxel,
+            Self::Filter(_) | Self::Ramp { .. } => Trouble::Options,
+            Self::Incomplete { .. } => Trouble::Call,
+            Self::Endless | Self::Nothing | Self::NoSize | Self::NoRadius | Self::NoBox => Trouble::Input,
+        }
+    }
+}
+
 impl Advice for FieldError {
     fn trouble(&self) -> Trouble<'_> {
         match self {
             Self::Stopped(stopped) => Trouble::Stopped(*stopped),
             Self::Lattice(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
-            Self::Filter(_) | Self::NoRamp { .. } => Trouble::Options,
-            Self::MissingField => Trouble::Call,
+            Self::Build(error) => error.trouble(),
             Self::Index(_) => Trouble::Index,
             Self::Repair(error) => error.trouble(),
             Self::Distance(error) => error.trouble(),
             Self::NotSolid(what) => Trouble::NotSolid(what),
-            Self::Nothing | Self::NothingOnLattice | Self::Endless | Self::NoSize | Self::NoRadius | Self::NoBox => {
-                Trouble::Input
-            }
+            Self::NothingOnLattice => Trouble::Input,
         }
     }
 

@@ -17,6 +17,7 @@ use crate::survey::Soup;
 
 /// Shells of the operands that stayed as they are, without any voxel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StandingReport {
     /// Shells that are part of the result as they are.
     pub shells: usize,

@@ -9,7 +9,7 @@ use super::{Draft, LatticeError, LimitError, NothingEnclosed, Operand, Options, 
 use crate::backend::BackendError;
 use crate::ldi::Expression;
 use crate::mesh::{IndexError, NotSolid, SolidError, TriMesh};
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 use crate::survey::{Soup, SoupError};
 
 /// Why a boolean, or a repair, gave no solid.
@@ -116,9 +116,9 @@ fn evaluate(
     plan::check_standing(&meshes, options.max_memory)?;
 
     let mut stages = Stages::new(progress);
-    stages.begin("orient")?;
+    stages.begin(Stage::Orient)?;
     let soup = Soup::of(&meshes, options.orient, progress)?;
-    stages.begin("shells")?;
+    stages.begin(Stage::Shells)?;
     let mut apart = Apart::find(&soup, expression, options, progress)?;
     let standing = apart.surface(&soup, &meshes, (options, &classes), h, progress)?;
     let job = Job { expression, options, classes: &classes, h, progress };

@@ -9,8 +9,8 @@ use super::plan::Offsets;
 use super::stages::Stages;
 use super::{Changed, MorphologyError, Plan, Report, StageTime, SurfaceOptions};
 use crate::mesh::{Solid, TriMesh};
-use crate::morphology::{self, Balls, Body, Canal, OffsetError};
-use crate::progress::{Progress, Stopped};
+use crate::morphology::{self, Balls, Canal, Gauge, OffsetError};
+use crate::progress::{Progress, Stage, Stopped};
 
 /// Options of [`canals`].
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +36,7 @@ pub enum Remove {
 
 /// What was found of canals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CanalReport {
     /// The diameter that was asked for, model units.
     pub max_diameter: f64,
@@ -89,10 +90,10 @@ pub fn canals(solid: &Solid, options: &CanalOptions, progress: &Progress) -> Res
     let mut stages = Stages::new(progress);
     let job = Job { solid: &local, h, surface: &options.surface, progress };
 
-    let body = Body::new(&local, None);
+    let body = Gauge::new(&local, None);
     let centres = job.there(&body, radius, &mut stages)?;
     let balls = Balls::new(&centres, radius);
-    stages.begin("canals")?;
+    stages.begin(Stage::Canals)?;
     let lattice = job.lattice(0.0)?;
     let mut found = morphology::canals(&body, (&balls, &centres), &lattice, progress)?;
     let removed = chosen(&options.remove, found.list.len() as u32)?;

@@ -20,6 +20,7 @@ const FRAGMENTS: f64 = 1e-3;
 
 /// Closed surfaces that were dropped.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Dropped {
     /// How many.
     pub surfaces: usize,

@@ -15,7 +15,7 @@ use crate::lattice::{BRICK, DistanceField, Lattice, Slot};
 use crate::ldi::{Expression, MAX_VOXELS};
 use crate::mesh::{IndexError, TriMesh, ValidateOptions, Validity, validate};
 use crate::orient::{OrientMode, OrientReport};
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 use crate::sdf::exact::{self, Band, ExactError, ExactOptions, Sign};
 use crate::sdf::{self, Levels, LevelsError, RobustOptions, characteristics, levels_memory};
 use crate::survey::{Cast, Soup, SoupError, Survey};
@@ -35,6 +35,7 @@ const WINDING_SECONDS: f64 = 150e-9;
 
 /// How the distance is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum DistanceMethod {
     /// To the nearest triangle, exactly.
@@ -51,6 +52,7 @@ pub enum DistanceMethod {
 
 /// What tells inside from outside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum DistanceSign {
     /// The pseudonormal at the nearest point of the mesh as it is: for closed, oriented ones.
@@ -144,6 +146,7 @@ pub struct DistanceOutcome {
 
 /// The account of one run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DistanceReport {
     /// Position of the first voxel, model units.
     pub origin: [f64; 3],
@@ -165,12 +168,14 @@ pub struct DistanceReport {
     pub vote: Option<VoteReport>,
     /// Which processor made the field, where there is a choice.
     pub made_by: Option<BackendReport>,
-    /// Wall-clock time of each stage, in order.
+    /// Wall-clock time of each stage, in order. Not written with the rest, as in [`super::Report::stages`].
+    #[serde(skip)]
     pub stages: Vec<StageTime>,
 }
 
 /// What a field would cost, before it is made.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DistancePlan {
     /// Voxel spacing, model units.
     pub voxel: f64,
@@ -256,19 +261,19 @@ pub fn distance(
         return Err(LimitError::Memory { needed, allowed, voxel_that_fits: None }.into());
     }
     let mut stages = Stages::new(progress);
-    let run = Run { lattice, band, options, progress };
+    let run = Making { lattice, band, options, progress };
     let mut report = DistanceReport::default();
     let field = match (options.method, options.sign) {
         (DistanceMethod::Exact, DistanceSign::Pseudonormal) => {
-            stages.begin("distance")?;
+            stages.begin(Stage::Distance)?;
             run.exact(input, Sign::Pseudonormal)?
         }
         (DistanceMethod::Characteristics, _) => {
-            stages.begin("distance")?;
+            stages.begin(Stage::Distance)?;
             run.characteristics(input)?
         }
         (DistanceMethod::Prism, _) => {
-            stages.begin("distance")?;
+            stages.begin(Stage::Distance)?;
             let (field, made_by) = run.prism(input)?;
             report.made_by = Some(made_by);
             field
@@ -380,14 +385,14 @@ impl From<SoupError> for DistanceError {
 }
 
 /// What the ways to a field share.
-struct Run<'a> {
+struct Making<'a> {
     lattice: Lattice,
     band: Band,
     options: &'a DistanceOptions,
     progress: &'a Progress,
 }
 
-impl Run<'_> {
+impl Making<'_> {
     fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<DistanceField, DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
         Ok(exact::exact(mesh, &self.lattice, sign, &options, self.progress)?)
@@ -415,34 +420,34 @@ impl Run<'_> {
         report: &mut DistanceReport,
     ) -> Result<DistanceField, DistanceError> {
         let (progress, orient, lattice) = (self.progress, self.options.orient, &self.lattice);
-        stages.begin("orient")?;
+        stages.begin(Stage::Orient)?;
         let soup = Soup::of(&[input], orient, progress)?;
-        stages.begin("ldi")?;
+        stages.begin(Stage::Ldi)?;
         let mut cast = Cast::on_cpu(soup, lattice, orient, progress)?;
         report.orient = cast.soup.reports.first().cloned();
         let expression = Expression::Operand(0);
         match (self.options.method, self.options.sign) {
             (DistanceMethod::Exact, DistanceSign::Winding) => {
                 cast.layers.clear();
-                stages.begin("distance")?;
+                stages.begin(Stage::Distance)?;
                 return self.exact(&cast.soup.mesh, Sign::Winding(&cast.winding(progress), &expression));
             }
             (DistanceMethod::Exact, DistanceSign::Levels) => {
                 cast.layers.clear();
-                stages.begin("levels")?;
+                stages.begin(Stage::Levels)?;
                 let levels = Levels::of(&cast.soup.mesh, lattice, progress)?;
-                stages.begin("distance")?;
+                stages.begin(Stage::Distance)?;
                 return self.exact(&cast.soup.mesh, Sign::Levels(&levels));
             }
             _ => {}
         }
-        stages.begin("spans")?;
+        stages.begin(Stage::Spans)?;
         let mut survey = Survey::of(cast, &expression, progress)?;
         refuse_scattered(&survey)?;
-        stages.begin("vote")?;
+        stages.begin(Stage::Vote)?;
         let votes = survey.votes(VoteRule::Winding, &survey.winding(progress), progress)?;
         report.vote = Some(doubts(&votes, lattice));
-        stages.begin("distance")?;
+        stages.begin(Stage::Distance)?;
         match self.options.method {
             DistanceMethod::Exact | DistanceMethod::Characteristics | DistanceMethod::Prism => {
                 self.exact(&survey.soup.mesh, Sign::Votes(&votes))

@@ -16,7 +16,7 @@ use super::{
 use crate::ldi::{Expression, Operands};
 use crate::mesh::{ClosestTree, Pseudonormals, Solid, TriMesh};
 use crate::morphology::Operation;
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 use crate::shells::{Shell, bodies, shells};
 
 /// Walls are at least this many voxels thick.
@@ -53,6 +53,7 @@ pub struct Drain {
 
 /// What was hollowed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HollowReport {
     /// Thickness of the wall, model units.
     pub wall: f64,
@@ -70,6 +71,7 @@ pub struct HollowReport {
 
 /// A drain as it was made; model units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DrainReport {
     /// Where it begins, on the surface.
     pub at: [f64; 3],
@@ -138,7 +140,7 @@ pub fn hollow(solid: &Solid, options: &HollowOptions, progress: &Progress) -> Re
     check_sizes(options, h)?;
     let surface = options.surface.with_voxel(h);
     let mut stages = Stages::new(progress);
-    stages.begin("hollow")?;
+    stages.begin(Stage::Hollow)?;
     let shrink = MorphologyOptions { operation: Operation::Erode, radius: wall, sharp: None, surface };
     let eroded = match with_voxels(solid, &shrink, Voxels::OfRadius, progress) {
         Ok(changed) => changed.solid,
@@ -152,7 +154,7 @@ pub fn hollow(solid: &Solid, options: &HollowOptions, progress: &Progress) -> Re
         return Err(HollowError::NoCavity { wall });
     }
     let drills = drills(solid, &cavity, &options.drains, h)?;
-    stages.begin("subtract")?;
+    stages.begin(Stage::Subtract)?;
     let operands = [solid.mesh(), &cavity].into_iter().chain(drills.iter().map(|drill| &drill.0));
     let made = boolean(operands, &Expression::difference(2 + drills.len()), &surface.into(), progress)?;
     let own = |source: &TriangleSource| match *source {

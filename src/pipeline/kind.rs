@@ -9,6 +9,7 @@ use crate::mesh::TriMesh;
 
 /// What a triangle of a result is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum TriangleKind {
     /// A triangle of an operand, with the same three corners.
@@ -35,6 +36,7 @@ impl TriangleKind {
 
 /// How many triangles of a result are of each kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TriangleCounts {
     /// Triangles of operands, with the same corners.
     pub kept: usize,

@@ -35,6 +35,7 @@ mod thicken;
 mod thickness;
 mod topology;
 mod warning;
+mod work;
 
 pub use advice::{Advice, Trouble};
 pub use apart::StandingReport;
@@ -66,5 +67,6 @@ pub use thicken::{SheetSide, ThickenError, ThickenOptions, ThickenReport, plan_t
 pub use thickness::{LengthsReport, ThicknessError, ThicknessReport, thickness};
 pub use topology::{LostBody, Topology, TopologyReport};
 pub use warning::Warning;
+pub use work::Work;
 
 use outcome::Draft;

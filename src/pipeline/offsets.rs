@@ -11,8 +11,8 @@ use crate::fit::{Facets, FitOptions, FitReport, Sides, Surface, TargetDistance, 
 use crate::lattice::Lattice;
 use crate::ldi::Evidence;
 use crate::mesh::{Bounds, Solid, TriMesh, ValidateOptions, validate};
-use crate::morphology::{Balls, Body, Centres, Offset, Region, Remain, closed, offset, reached};
-use crate::progress::Progress;
+use crate::morphology::{Balls, Centres, Gauge, Offset, Region, Remain, closed, offset, reached};
+use crate::progress::{Progress, Stage};
 use crate::sdf::exact::{ExactDistance, PointSign};
 
 /// Voxels of a radius, at least: of less, a ball passes between voxels; back and forth, chords of less are off by more than a
@@ -125,15 +125,15 @@ impl Job<'_> {
     /// One offset. `reach`: how many times its level the farthest corners are away from the solid.
     pub(super) fn one_way(
         &self,
-        body: &Body<'_>,
+        body: &Gauge<'_>,
         level: f64,
         reach: f64,
         stages: &mut Stages<'_>,
     ) -> Result<Made, MorphologyError> {
-        stages.begin("offset")?;
+        stages.begin(Stage::Offset)?;
         let lattice = self.lattice(level.max(0.0) * reach)?;
         let offset = offset(body, level, &lattice, self.progress)?;
-        stages.begin("fit")?;
+        stages.begin(Stage::Fit)?;
         let off = |p| (body.at(p, level.abs() + self.h).0 - level).abs();
         self.fitted(
             (offset, &lattice),
@@ -145,7 +145,7 @@ impl Job<'_> {
     }
 
     pub(super) fn there_and_back(&self, radius: f64, stages: &mut Stages<'_>) -> Result<Made, MorphologyError> {
-        let body = Body::new(self.solid, None);
+        let body = Gauge::new(self.solid, None);
         let centres = self.there(&body, radius, stages)?;
         self.back(&body, &Balls::new(&centres, radius), radius, None, stages)
     }
@@ -153,11 +153,11 @@ impl Job<'_> {
     /// The first step of a closing or opening: where centres of balls can be.
     pub(super) fn there(
         &self,
-        body: &Body<'_>,
+        body: &Gauge<'_>,
         radius: f64,
         stages: &mut Stages<'_>,
     ) -> Result<Centres, MorphologyError> {
-        stages.begin("first offset")?;
+        stages.begin(Stage::FirstOffset)?;
         let lattice = self.lattice(radius.max(0.0))?;
         let mut there = offset(body, radius, &lattice, self.progress)?;
         let between = std::mem::take(&mut there.remains);
@@ -180,20 +180,20 @@ impl Job<'_> {
     /// The second step, by the balls of the first; within a region, or everywhere.
     pub(super) fn back(
         &self,
-        body: &Body<'_>,
+        body: &Gauge<'_>,
         balls: &Balls<'_>,
         radius: f64,
         region: Option<&Region<'_>>,
         stages: &mut Stages<'_>,
     ) -> Result<Made, MorphologyError> {
-        stages.begin("second offset")?;
+        stages.begin(Stage::SecondOffset)?;
         let lattice = self.lattice(0.0)?;
         let back = closed(body, balls, &lattice, region, self.progress)?;
         let reached = reached(body, radius, &lattice, region, self.progress)?;
         if !back.changed && reached.iter().all(|reached| reached.touched == reached.tried) {
             return Ok(self.unchanged());
         }
-        stages.begin("fit")?;
+        stages.begin(Stage::Fit)?;
         let evidence = Evidence::of_samples(reached.iter().map(|r| (r.tried, r.touched)));
         let off = |p| {
             let own = body.at(p, self.h).0.abs();

@@ -49,6 +49,7 @@ pub struct SurfaceOptions {
 
 /// What numbers a result may have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Precision {
     /// Every coordinate is an `f32`, so that STL and glTF hold it unchanged, and the result is valid with these; only for operands far from the

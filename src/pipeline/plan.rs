@@ -16,6 +16,7 @@ use crate::survey::Soup;
 
 /// What a run would cost, before it is run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Plan {
     /// Voxel spacing, model units.
     pub voxel: f64,

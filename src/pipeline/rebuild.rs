@@ -12,7 +12,7 @@ use crate::fit::{Facets, fit};
 use crate::lattice::Lattice;
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
-use crate::progress::Progress;
+use crate::progress::{Progress, Stage};
 use crate::sdf;
 use crate::survey::{Cast, CastOptions, Soup, Survey};
 
@@ -81,32 +81,32 @@ impl Job<'_> {
         let finest = sizing::finest(&bounds);
         let lattice = sizing::lattice(&bounds, VoxelSize::Length(h))?;
         plan::check_limits(&[&soup.mesh], &lattice, &options.surface(), plan::Offsets::default())?;
-        stages.begin("ldi")?;
+        stages.begin(Stage::Ldi)?;
         let rays = self.rays(&soup.mesh, &lattice);
         let cast = Cast::of(soup, &lattice, &rays, progress)?;
         let made_by = cast.made_by.clone();
-        stages.begin("spans")?;
+        stages.begin(Stage::Spans)?;
         let survey = Survey::of(cast, expression, progress)?;
         refuse_scattered(&survey)?;
-        stages.begin("vote")?;
+        stages.begin(Stage::Vote)?;
         let winding = survey.winding(progress);
         let votes = survey.votes(options.vote, &winding, progress)?;
-        stages.begin("sdf")?;
+        stages.begin(Stage::Sdf)?;
         let planes = survey.planes();
         let distance = sdf::robust(&survey.spans, &planes, (&votes, &lattice), &options.robust(), progress)?;
-        stages.begin("contour")?;
+        stages.begin(Stage::Contour)?;
         let crossing = refine::crossings(&survey, &winding, &distance);
         let mut raw = contour(&distance, &crossing, &ContourOptions::default(), progress)?;
         if raw.mesh.triangles.is_empty() {
             return Err(why_nothing(&survey, finest).into());
         }
         let lids = refine::lids(&mut raw, &survey, &winding, progress)?;
-        stages.begin("collapse")?;
+        stages.begin(Stage::Collapse)?;
         let facets = Facets::new(&survey.soup.mesh, lids).with_classes(survey.soup.classes(self.classes));
         let mut surface = refine::merged(raw, &facets, &lattice, &options.surface(), progress)?;
         let mut report = Report::surveyed(&survey, &votes, made_by, finest);
         if let Some(options) = &options.fit {
-            stages.begin("fit")?;
+            stages.begin(Stage::Fit)?;
             let (fitted, account) = fit(&surface, &facets, &survey.evidence, h, options, progress)?;
             (surface, report.fit) = (fitted, Some(account));
         }

@@ -15,11 +15,13 @@ use crate::lattice::{Grid, Lattice};
 use crate::ldi::{Spans, THIN, ThinPlace, lengths, thin_places};
 use crate::mesh::Plane;
 use crate::orient::OrientReport;
+use crate::progress::Stage;
 use crate::survey::Survey;
 use crate::vote::{VoteReport, Votes, doubts};
 
 /// The account of one run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Report {
     /// Voxel spacing, model units.
     pub voxel: f64,
@@ -57,9 +59,12 @@ pub struct Report {
     pub closed_triangles: usize,
     /// How many triangles of the result are kept, rebuilt and made up.
     pub triangles: TriangleCounts,
-    /// Wall-clock time of each stage, in order.
+    /// Wall-clock time of each stage, in order. Not written with the rest: a whole run has stages besides these, and tells all of
+    /// them in one list; so it is with warnings.
+    #[serde(skip)]
     pub stages: Vec<StageTime>,
     /// What a user should know, most important first.
+    #[serde(skip)]
     pub warnings: Vec<Warning>,
 }
 
@@ -115,6 +120,7 @@ impl Report {
 
 /// Rays and crossings of all 13 directions.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LdiReport {
     /// Rays that hit something.
     pub rays: usize,
@@ -130,6 +136,7 @@ pub struct LdiReport {
 
 /// Evidence of walls and gaps that the voxel size may not hold.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThinReport {
     /// Spans (ray pieces inside the solid) along the three face directions.
     pub spans: usize,
@@ -192,6 +199,7 @@ fn thin_regions(spans: &[Spans], planes: &[Plane], surface: &Surface, lattice: &
 
 /// A place where walls or gaps are thinner than the lattice holds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThinRegion {
     /// Whether it is a gap; else a wall.
     pub gap: bool,
@@ -207,9 +215,10 @@ pub struct ThinRegion {
 
 /// Seconds a stage took.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StageTime {
-    /// Name of the stage.
-    pub stage: &'static str,
+    /// The stage.
+    pub stage: Stage,
     /// Wall-clock seconds.
     pub seconds: f64,
 }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::StageTime;
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 
 /// Announces stages one after another and keeps the seconds each took.
 pub(super) struct Stages<'a> {
@@ -18,7 +18,7 @@ impl<'a> Stages<'a> {
     }
 
     /// Ends the stage before and begins `stage`.
-    pub(super) fn begin(&mut self, stage: &'static str) -> Result<(), Stopped> {
+    pub(super) fn begin(&mut self, stage: Stage) -> Result<(), Stopped> {
         self.end();
         self.times.push(StageTime { stage, seconds: 0.0 });
         self.progress.stage(stage)

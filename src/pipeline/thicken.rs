@@ -13,8 +13,8 @@ use super::{BooleanError, Changed, MorphologyError, Plan, Report, SurfaceOptions
 use crate::digits;
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, IndexError, Pseudonormals, Solid, TriMesh};
-use crate::morphology::{Body, OffsetError, middles};
-use crate::progress::{Progress, Stopped};
+use crate::morphology::{Gauge, OffsetError, middles};
+use crate::progress::{Progress, Stage, Stopped};
 
 /// Walls are at least this many voxels thick: of less the lattice makes no round edge.
 const LEAST_VOXELS: f64 = 4.0;
@@ -28,6 +28,7 @@ const APART: f64 = 1.0;
 
 /// On which side of an open sheet there will be material.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum SheetSide {
     /// Half of the thickness on either side.
@@ -52,6 +53,7 @@ pub struct ThickenOptions {
 
 /// What was too thin.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThickenReport {
     /// The least thickness, model units.
     pub least: f64,
@@ -135,8 +137,8 @@ pub fn thicken(
     let local = solid.map(|solid| frame.local(solid));
     let fixed = options.surface.with_voxel(h);
     let mut stages = Stages::new(progress);
-    stages.begin("thin walls")?;
-    let body = local.as_ref().map(|solid| Body::new(solid, None));
+    stages.begin(Stage::ThinWalls)?;
+    let body = local.as_ref().map(|solid| Gauge::new(solid, None));
     let (mut thin, thin_area) = match &body {
         Some(body) => middles(body, min, h, progress)?,
         None => (TriMesh::default(), 0.0),
@@ -152,7 +154,7 @@ pub fn thicken(
         }
         solid => {
             let job = Job { solid: &thin, h, surface: &fixed, progress };
-            let mut grown = job.one_way(&Body::sheet(&thin), min / 2.0, 1.0, &mut stages)?.surface.mesh;
+            let mut grown = job.one_way(&Gauge::sheet(&thin), min / 2.0, 1.0, &mut stages)?.surface.mesh;
             frame.mesh(&mut grown);
             united(solid, &grown, &fixed, progress)?
         }
@@ -226,7 +228,7 @@ impl From<OffsetError> for ThickenError {
 }
 
 /// Triangles that are no part of the solid's surface and lie outside of it; all where there is no solid.
-fn sheets(input: &TriMesh, solid: Option<&Body<'_>>, h: f64, progress: &Progress) -> Result<TriMesh, Stopped> {
+fn sheets(input: &TriMesh, solid: Option<&Gauge<'_>>, h: f64, progress: &Progress) -> Result<TriMesh, Stopped> {
     progress.check()?;
     let apart = |t: &usize| {
         let corners = input.corners(*t);

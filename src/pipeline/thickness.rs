@@ -7,11 +7,12 @@ use super::sizing::{self, MAX_RESOLUTION, TYPED};
 use super::{LatticeError, LimitError, Options, plan};
 use crate::ldi::{Expression, THIN};
 use crate::mesh::{IndexError, TriMesh};
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 use crate::survey::{Cast, Soup, SoupError, Survey};
 
 /// The widths of walls and gaps, and the voxel that holds them. Model units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThicknessReport {
     /// Voxel spacing of the rays.
     pub voxel: f64,
@@ -32,6 +33,7 @@ pub struct ThicknessReport {
 
 /// How some lengths are distributed, model units.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LengthsReport {
     /// How many there are.
     pub count: usize,
@@ -79,11 +81,11 @@ pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Res
     let bounds = sizing::bounds([&*mesh]).map_err(|_| ThicknessError::Empty)?;
     let lattice = sizing::lattice(&bounds, options.voxel)?;
     plan::check_limits(&[&mesh], &lattice, &options.surface(), plan::Offsets::default())?;
-    progress.stage("orient")?;
+    progress.stage(Stage::Orient)?;
     let soup = Soup::of(&[&mesh], options.orient, progress)?;
-    progress.stage("ldi")?;
+    progress.stage(Stage::Ldi)?;
     let cast = Cast::on_cpu(soup, &lattice, options.orient, progress)?;
-    progress.stage("spans")?;
+    progress.stage(Stage::Spans)?;
     let survey = Survey::of(cast, &Expression::Operand(0), progress)?;
     let found = survey.widths();
     let walls = LengthsReport::of(&found.spans, lattice.h);

@@ -11,6 +11,7 @@ use crate::shells::{Fate, Kind, Shell, shells};
 
 /// What a surface bounds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Topology {
     /// Closed surfaces that face outwards.
     pub bodies: usize,
@@ -22,6 +23,7 @@ pub struct Topology {
 
 /// A body or void of the operands that the result should have and has not.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LostBody {
     /// Whether it was a void.
     pub void: bool,
@@ -35,6 +37,7 @@ pub struct LostBody {
 
 /// How the bodies of the result compare with those that the operands describe.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TopologyReport {
     /// What the operands describe; `None` where they are too torn to tell, or where they cross each other. Bodies that touch count
     /// as one, and holes as closed.

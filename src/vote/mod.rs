@@ -25,6 +25,7 @@ use serde::Serialize;
 
 /// How the votes of the directions make a voxel inside or outside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum VoteRule {
     /// Ten valid votes or more that all agree; else the generalised winding number of the
@@ -41,6 +42,7 @@ pub enum VoteRule {
 
 /// How sure the voxels near the surface are.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct VoteReport {
     /// Voxels that were voted on (those of the active bricks).
     pub voxels: usize,
@@ -52,6 +54,7 @@ pub struct VoteReport {
 
 /// A connected group of doubtful voxels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DoubtfulRegion {
     /// Smallest corner, model units.
     pub min: [f64; 3],

@@ -10,7 +10,7 @@ fn a_table_in_words_and_a_report() {
     }
     let folder = folder();
     let json = run_in(&folder, "compare testdata/torus.ply testdata/hollow_ball.stl --json --samples 5000").exits(0);
-    let found = &json.json()["comparison"];
+    let found = &json.json()["result"]["comparison"];
     assert_eq!(found["samples"], 5000);
     let number = |way: &str, what: &str| found[way][what].as_f64().expect("a number");
     assert_eq!(number("symmetric", "max"), number("a_to_b", "max").max(number("b_to_a", "max")));

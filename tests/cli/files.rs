@@ -57,7 +57,7 @@ fn inspect_prints_a_table_and_json() {
         assert!(text.contains(words), "`{words}` is missing in:\n{text}");
     }
     let json = run(&["inspect", "testdata/hollow_ball.stl", "--json", "--unit", "mm"]).exits(0).json();
-    assert_eq!(json["schema"], 1);
+    assert_eq!(json["schema"], 2);
     assert_eq!(json["verb"], "inspect");
     assert_eq!(json["exit"], 0);
     let validity = &json["inputs"][0]["validity"];

@@ -12,6 +12,7 @@ mod files;
 mod gpu;
 mod maps;
 mod readers;
+mod schema;
 mod sdf;
 mod slices;
 mod solids;

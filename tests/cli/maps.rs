@@ -36,10 +36,10 @@ fn kept_rebuilt_and_made_up_are_told_apart() {
             assert_eq!(kind == 0, own.contains(&sorted(map.mesh.corners(t))), "{name}: triangle {t} is of kind {kind}");
         }
         let count = |kind: u32| kinds.iter().filter(|k| **k == kind).count();
-        let counts = &report["pipeline"]["triangles"];
+        let counts = &report["result"]["pipeline"]["triangles"];
         let [kept, rebuilt, made_up] = [0, 1, 2].map(count);
         assert_eq!(*counts, serde_json::json!({ "kept": kept, "rebuilt": rebuilt, "made_up": made_up }), "{name}");
-        assert_eq!(report["output"]["validity"]["triangles"], kept + rebuilt + made_up);
+        assert_eq!(report["result"]["output"]["validity"]["triangles"], kept + rebuilt + made_up);
         // Holes are made up, and only they; where surfaces meet, triangles are cut.
         assert_eq!(made_up > 0, name != "overlapping_boxes.obj", "{name}: {made_up}");
         assert!(kept > 0 && (rebuilt > 0 || name == "open_cube.off"), "{name}: {kept} and {rebuilt}");
@@ -64,7 +64,7 @@ fn single_precision_and_morphology_have_the_same_kinds() {
     let folder = folder();
     let counts = |line: &str| {
         let report = run_in(&folder, &format!("{line} --json --force")).exits(0).json();
-        let counts = &report["pipeline"]["triangles"];
+        let counts = &report["result"]["pipeline"]["triangles"];
         ["kept", "rebuilt", "made_up"].map(|kind| counts[kind].as_u64().expect("a count"))
     };
     // What is valid is kept, in single precision too.

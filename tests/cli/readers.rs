@@ -119,7 +119,7 @@ fn negative_parts_are_subtracted_where_there_is_something_to_subtract_from() {
         ("erode IN -o OUT/o.ply --radius 1", 8.0 * (64.0 - 32.0 - std::f64::consts::PI), 0.5),
     ] {
         let run = on(&folder, &format!("{arguments} --resolution 48 --json --force"), &path).exits(0);
-        let found = run.json()["output"]["validity"]["volume"].as_f64().unwrap();
+        let found = run.json()["result"]["output"]["validity"]["volume"].as_f64().unwrap();
         assert!((found - volume).abs() <= tolerance, "{arguments}: {found} instead of {volume}");
         assert!(!run.stderr.contains("negative part left out"), "{}", run.stderr);
     }

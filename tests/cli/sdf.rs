@@ -87,11 +87,11 @@ fn soups_go_by_the_votes_unless_told_otherwise() {
     let inside = |flags: &str| {
         let line = format!("sdf testdata/open_cube.off -o OUT/c.nrrd --resolution 24 --band 2h --force {flags} --json");
         let json = run_in(&folder, &line).exits(0).json();
-        (json["distance"]["inside"].as_u64().expect("a count"), json)
+        (json["result"]["distance"]["inside"].as_u64().expect("a count"), json)
     };
     let (count, json) = inside("");
     assert_eq!((&json["options"]["sign"], &json["options"]["method"]), (&"votes".into(), &"exact".into()));
-    field(&folder, "c.nrrd").agrees_with(&cube, json["distance"]["band"].as_f64().expect("a length"), false);
+    field(&folder, "c.nrrd").agrees_with(&cube, json["result"]["distance"]["band"].as_f64().expect("a length"), false);
     // 24³ voxels of the cube, give or take its border.
     assert!((22 * 22 * 22..26 * 26 * 26).contains(&count), "{count}");
     assert_eq!(inside("--sign winding").0, count);
@@ -114,10 +114,10 @@ fn characteristics_are_for_closed_surfaces() {
     let json = run_in(&folder, line).exits(0).json();
     let options = &json["options"];
     assert_eq!((&options["method"], &options["sign"]), (&"characteristics".into(), &"pseudonormal".into()));
-    let band = json["distance"]["band"].as_f64().expect("a length");
+    let band = json["result"]["distance"]["band"].as_f64().expect("a length");
     field(&folder, "c.nrrd").agrees_with(&mesh("testdata/torus.ply"), band, true);
     let plan = run_in(&folder, "sdf testdata/torus.ply --method characteristics --plan --json").exits(0).json();
-    assert!(plan["plan"]["seconds"].as_f64().is_some_and(|seconds| seconds > 0.0), "{plan}");
+    assert!(plan["result"]["plan"]["seconds"].as_f64().is_some_and(|seconds| seconds > 0.0), "{plan}");
     for (arguments, words) in [
         ("testdata/torus.ply --sign votes", ["goes by pseudonormals", "--method exact"]),
         ("testdata/torus.ply --sign winding", ["goes by pseudonormals", "--method exact"]),
@@ -162,9 +162,9 @@ fn the_formats_hold_the_same_numbers() {
         assert_eq!(said.contains("no place for origin"), format == "npy", "{said}");
         let json = std::fs::read(folder.path().join("r.json")).expect("a report");
         let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
-        assert_eq!((&json["output"]["format"], &json["verb"]), (&format.into(), &"sdf".into()));
-        assert_eq!(json["output"]["sha256"].as_str().map(str::len), Some(64));
-        assert!(json["distance"]["origin"][0].is_f64() && json["distance"]["dims"][2].is_u64());
+        assert_eq!((&json["result"]["output"]["format"], &json["verb"]), (&format.into(), &"sdf".into()));
+        assert_eq!(json["result"]["output"]["sha256"].as_str().map(str::len), Some(64));
+        assert!(json["result"]["distance"]["origin"][0].is_f64() && json["result"]["distance"]["dims"][2].is_u64());
     }
     let expected = field(&folder, "f.nrrd");
     let [x, y, z] = [0, 1, 2].map(|k| expected.sizes[k]);
@@ -207,7 +207,7 @@ fn a_plan_and_a_cap() {
     }
     let plan = |band: &str| {
         let json = run_in(&folder, &format!("sdf testdata/torus.ply --plan --json --band {band}")).exits(0).json();
-        json["plan"]["memory"].as_u64().expect("bytes")
+        json["result"]["plan"]["memory"].as_u64().expect("bytes")
     };
     assert!(plan("2h") < plan("10h") && plan("10h") < plan("40h"));
     for flags in ["-o OUT/a.nrrd", "--plan"] {

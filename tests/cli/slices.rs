@@ -75,7 +75,7 @@ fn a_tree_has_the_same_bytes_whatever_the_threads_and_takes_less_room() {
     assert!(streamed == bytes("1.vdb"));
     let plan = |format: &str| {
         let json = run_in(&folder, &format!("{line} --plan --json -o OUT/x.{format}")).exits(0).json();
-        json["plan"]["file"].as_u64().expect("bytes") as usize
+        json["result"]["plan"]["file"].as_u64().expect("bytes") as usize
     };
     assert!(plan("vdb") < plan("vti"), "{} {}", plan("vdb"), plan("vti"));
     assert!((plan("vdb") / 2..2 * plan("vdb")).contains(&streamed.len()), "{} {}", plan("vdb"), streamed.len());
@@ -92,7 +92,7 @@ fn slices_show_both_sides_and_where_they_meet() {
     said.says(&["320 x 240 pixels", "slice z = ", "blue inside, orange outside", " mm"]);
     let report = std::fs::read(folder.path().join("r.json")).expect("a report");
     let report: serde_json::Value = serde_json::from_slice(&report).expect("JSON");
-    let slice = &report["slices"][0];
+    let slice = &report["result"]["slices"][0];
     assert_eq!((&slice["axis"], &report["options"]["slice"]), (&"z".into(), &"z=60%".into()));
     let [low, high] = [0, 1].map(|k| slice["range"][k].as_f64().expect("a number"));
     assert!(low < 0.0 && high > 0.0 && slice["full"].as_f64() == Some(high.max(-low)), "{slice}");
@@ -117,7 +117,7 @@ fn surfaces_and_slices_stand_beside_each_other() {
     let size = "--width 200 --height 160";
     let draw = |inputs: &str, name: &str| {
         let json = run_in(&folder, &format!("render {inputs} -o OUT/{name}.png {size} --json")).exits(0).json();
-        (picture(&folder, &format!("{name}.png")), json["slices"].as_array().map_or(0, Vec::len))
+        (picture(&folder, &format!("{name}.png")), json["result"]["slices"].as_array().map_or(0, Vec::len))
     };
     let (alone, _) = draw("testdata/torus.ply", "alone");
     let (slice, slices) = draw("OUT/t.vdb --slice x=0.2", "slice");

@@ -126,8 +126,8 @@ fn a_plan_says_what_it_would_cost_and_does_nothing() {
         assert!(text.lines().any(|line| line.starts_with(label)), "`{label}` is missing in:\n{text}");
     }
     let json = run_in(&folder, "repair testdata/torus.ply -o OUT/a.stl --plan --json").exits(0).json();
-    assert!(json["plan"]["memory"].as_u64().unwrap() > 0);
-    assert!(json["plan"]["triangles"].as_u64().unwrap() > 0);
+    assert!(json["result"]["plan"]["memory"].as_u64().unwrap() > 0);
+    assert!(json["result"]["plan"]["triangles"].as_u64().unwrap() > 0);
     assert_empty(&folder);
 }
 
@@ -147,7 +147,7 @@ fn the_report_is_json_and_complete() {
     assert!(json["stages"].as_array().unwrap().len() > 3);
     if run.status == 0 {
         assert_eq!(run.stderr, "", "-q and yet words");
-        assert_eq!(json["output"]["validity"]["open_edges"], 0);
+        assert_eq!(json["result"]["output"]["validity"]["open_edges"], 0);
     }
 }
 
@@ -158,7 +158,7 @@ fn a_failed_run_reports_its_error() {
     let json = run.json();
     assert_eq!(json["exit"], 4);
     assert!(json["error"]["message"].as_str().unwrap().len() > 10);
-    assert_eq!(json["output"], Value::Null);
+    assert_eq!(json["result"]["output"], Value::Null);
 }
 
 #[test]
@@ -186,9 +186,9 @@ fn morphology_verbs_say_what_they_did_and_refuse_what_cannot_be() {
     };
     let volume = |verb: &str, flags: &str| {
         let report = run(verb, &format!("{flags} --json")).exits(0).json();
-        assert_eq!(report["output"]["validity"]["open_edges"], 0);
-        assert_eq!(report["pipeline"]["morphology"]["operation"], verb);
-        report["output"]["validity"]["volume"].as_f64().expect("a volume")
+        assert_eq!(report["result"]["output"]["validity"]["open_edges"], 0);
+        assert_eq!(report["result"]["pipeline"]["morphology"]["operation"], verb);
+        report["result"]["output"]["validity"]["volume"].as_f64().expect("a volume")
     };
     assert!((volume("dilate", "--radius 1 --sharp") - 1728.0).abs() < 0.1);
     let round = volume("dilate", "--radius 1");
@@ -221,8 +221,8 @@ fn canals_are_listed_and_filled_by_number() {
     }
     assert_eq!(solid(&folder, "map.ply")["genus"], 5);
     let report = canals("--remove 1,3 -o OUT/out.off --json").exits(0).json();
-    assert_eq!(report["pipeline"]["canals"]["removed"], serde_json::json!([1, 3]));
-    assert_eq!(report["output"]["validity"]["genus"], 3);
+    assert_eq!(report["result"]["pipeline"]["canals"]["removed"], serde_json::json!([1, 3]));
+    assert_eq!(report["result"]["output"]["validity"]["genus"], 3);
     canals("--remove -o OUT/all.off").exits(0).says(&["3 of 3 canals filled"]);
     assert_eq!(solid(&folder, "all.off")["genus"], 2);
     let none = run_in(&folder, "canals testdata/open_cube.off --resolution 32 -d 1").exits(0);
@@ -240,7 +240,7 @@ fn thin_parts_are_measured_and_thickened_and_sheets_become_plates() {
     let folder = folder();
     let thinnest = |file: &str| {
         let report = run_in(&folder, &format!("inspect {file} --thickness --voxel 0.2 --json")).exits(0).json();
-        report["thickness"]["walls"]["percentiles"][1].as_f64().expect("a width")
+        report["result"]["thickness"]["walls"]["percentiles"][1].as_f64().expect("a width")
     };
     assert!((thinnest("testdata/thin_parts.obj") - 0.3).abs() < 0.01);
     let text = run_in(&folder, "inspect testdata/thin_parts.obj --thickness --voxel 0.2").exits(0).text();
@@ -268,21 +268,21 @@ fn the_map_shows_what_closes_holes_and_the_fit_has_switches() {
     let repair = |flags: &str| {
         let line = format!("repair testdata/open_cube.off -o OUT/out.off --resolution 48 --force {flags}");
         let report = run_in(&folder, &format!("{line} --json")).exits(0).json();
-        (report["output"]["validity"]["triangles"].as_u64().expect("a count"), report)
+        (report["result"]["output"]["validity"]["triangles"].as_u64().expect("a count"), report)
     };
     let (few, report) = repair("--map OUT/map.ply");
-    let closed = report["pipeline"]["closed_triangles"].as_u64().expect("a count");
+    let closed = report["result"]["pipeline"]["closed_triangles"].as_u64().expect("a count");
     assert!(few < 100 && closed > 0 && closed < few, "{few} triangles, {closed} of them close the hole");
     let map = solid(&folder, "map.ply");
     assert_eq!(map["triangles"], few);
     let text = String::from_utf8_lossy(&std::fs::read(folder.path().join("map.ply")).expect("a map")).into_owned();
     assert!(text.contains("property uchar red"), "the map has colours");
-    assert_eq!(report["pipeline"]["fit"]["kept"], 10);
+    assert_eq!(report["result"]["pipeline"]["fit"]["kept"], 10);
     let (all, report) = repair("--simplify off --rebuild");
-    assert_eq!(report["pipeline"]["fit"]["kept"], 0);
+    assert_eq!(report["result"]["pipeline"]["fit"]["kept"], 0);
     let (raw, report) = repair("--no-fit");
     assert!(all > 1000 && raw > 1000, "{all} and {raw} triangles");
-    assert!(report["pipeline"]["fit"].is_null());
+    assert!(report["result"]["pipeline"]["fit"].is_null());
     run_in(&folder, "repair testdata/open_cube.off -o OUT/out.off --no-fit --simplify off").exits(2);
     run_in(&folder, "repair testdata/open_cube.off -o OUT/out.off --no-fit --rebuild").exits(2);
     run_in(&folder, "repair testdata/open_cube.off -o OUT/out.ply --map OUT/out.ply").exits(2);

@@ -52,8 +52,8 @@ fn a_result_that_is_mostly_lost_replaces_no_file() {
     assert_eq!(names_in(folder.path()), ["in.ply", "out.ply", "r.json"]);
     let report: Value =
         serde_json::from_slice(&fs::read(folder.path().join("r.json")).expect("a report")).expect("JSON");
-    assert_eq!((&report["exit"], &report["output"]), (&3.into(), &Value::Null));
-    assert_eq!(report["pipeline"]["topology"]["lost_count"], 1);
+    assert_eq!((&report["exit"], &report["result"]["output"]), (&3.into(), &Value::Null));
+    assert_eq!(report["result"]["pipeline"]["topology"]["lost_count"], 1);
     // A stream gets nothing either.
     let piped = run_in(&folder, "repair OUT/in.ply -o - --out-format ply --resolution 16 --rebuild").exits(3);
     assert!(piped.stdout.is_empty());
@@ -112,7 +112,7 @@ fn gltf_is_in_metres_and_comes_back_as_it_was() {
     saved(&folder, "in.3mf", &millimetres, Some(Unit::Millimetre));
     for format in ["glb", "gltf"] {
         let report = run_in(&folder, &format!("convert OUT/in.3mf -o OUT/a.{format} --json")).exits(0);
-        assert_eq!(report.says(&["times 0.001"]).json()["output"]["unit"], "m");
+        assert_eq!(report.says(&["times 0.001"]).json()["result"]["output"]["unit"], "m");
         run_in(&folder, &format!("repair OUT/in.3mf -o OUT/b.{format}")).exits(0).says(&["mm³", "times 0.001"]);
         for name in ["a", "b"] {
             let loaded = read(folder.path().join(format!("{name}.{format}"))).expect("it is sound");
@@ -154,12 +154,12 @@ fn files_in_different_units_are_told_of_in_one() {
 fn grids_are_inspected_and_converted() {
     let folder = folder();
     run_in(&folder, "sdf testdata/open_cube.off -o OUT/a.vti --resolution 24 --unit mm -q").exits(0);
-    let first = run_in(&folder, "inspect OUT/a.vti --json").exits(0).json()["grid"].clone();
+    let first = run_in(&folder, "inspect OUT/a.vti --json").exits(0).json()["result"]["grid"].clone();
     assert!((first["inside_volume"].as_f64().expect("a volume") - 1000.0).abs() < 60.0, "{first}");
     let mut from = "a.vti".to_string();
     for to in ["b.nrrd", "c.vdb", "d.vti", "e.vdb", "f.nrrd"] {
         run_in(&folder, &format!("convert OUT/{from} -o OUT/{to}")).exits(0).says(&["voxels, as ", ", in mm"]);
-        let mut grid = run_in(&folder, &format!("inspect OUT/{to} --json")).exits(0).json()["grid"].clone();
+        let mut grid = run_in(&folder, &format!("inspect OUT/{to} --json")).exits(0).json()["result"]["grid"].clone();
         grid["stored"] = first["stored"].clone();
         assert_eq!(grid, first, "{from} to {to}");
         from = to.to_string();

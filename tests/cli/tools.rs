@@ -30,16 +30,21 @@ fn assert_near(found: f64, expected: f64, tolerance: f64) {
 fn decimate_leaves_what_was_asked_for_and_says_how_far_it_moved() {
     let folder = folder();
     let json = run_in(&folder, "decimate testdata/torus.ply -o OUT/t.stl --ratio 25% --json").exits(0).json();
-    assert_eq!(json["decimate"]["before"], 4096);
-    assert_eq!(json["decimate"]["reached"], true);
-    assert!(number(&json["decimate"]["after"]) <= 1024.0 && number(&json["decimate"]["after"]) > 900.0);
-    assert!(number(&json["comparison"]["symmetric"]["max"]) < 0.2);
-    assert_eq!(json["output"]["validity"]["self_intersecting_triangles"], 0);
-    assert_eq!(mesh(&folder, "t.stl").triangles.len(), json["decimate"]["after"].as_u64().expect("a count") as usize);
+    assert_eq!(json["result"]["decimate"]["before"], 4096);
+    assert_eq!(json["result"]["decimate"]["reached"], true);
+    assert!(
+        number(&json["result"]["decimate"]["after"]) <= 1024.0 && number(&json["result"]["decimate"]["after"]) > 900.0
+    );
+    assert!(number(&json["result"]["comparison"]["symmetric"]["max"]) < 0.2);
+    assert_eq!(json["result"]["output"]["validity"]["self_intersecting_triangles"], 0);
+    assert_eq!(
+        mesh(&folder, "t.stl").triangles.len(),
+        json["result"]["decimate"]["after"].as_u64().expect("a count") as usize
+    );
     let said = run_in(&folder, "decimate testdata/torus.ply -o OUT/t.ply --max-deviation 0.05").exits(0);
     said.says(&["4,096 triangles became", "moved", "without self-intersections"]);
     let json = run_in(&folder, "compare testdata/torus.ply OUT/t.ply --json").exits(0).json();
-    assert!(number(&json["comparison"]["symmetric"]["max"]) <= 0.05);
+    assert!(number(&json["result"]["comparison"]["symmetric"]["max"]) <= 0.05);
     run_in(&folder, "inspect OUT/t.ply --fail-on any").exits(0);
 }
 
@@ -126,8 +131,12 @@ fn split_writes_every_body_and_keeps_voids_with_theirs() {
     assert_eq!((&json["options"]["bodies"], &json["options"]["voids"]), (&2.into(), &1.into()));
     assert_eq!(names_in(&folder.path().join("parts")), ["part_001.ply", "part_002.ply"]);
     // The largest first; both as they were, to the last bit.
-    let volumes: Vec<f64> =
-        json["outputs"].as_array().expect("a list").iter().map(|o| number(&o["validity"]["volume"])).collect();
+    let volumes: Vec<f64> = json["result"]["outputs"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|o| number(&o["validity"]["volume"]))
+        .collect();
     assert!(volumes[0] > volumes[1], "{volumes:?}");
     for (name, expected) in [("parts/part_001.ply", &aside), ("parts/part_002.ply", &torus)] {
         let found = mesh(&folder, name);
@@ -234,10 +243,10 @@ fn hollow_keeps_the_surface_and_reports_what_is_saved() {
     let folder = folder();
     let line = "hollow testdata/inside_out_cube.stl -o OUT/h.off --wall 1 --resolution 64";
     let json = run_in(&folder, &format!("{line} --json")).exits(0).json();
-    let report = &json["pipeline"]["hollow"];
+    let report = &json["result"]["pipeline"]["hollow"];
     assert_eq!((&report["cavities"], &report["left_out"]), (&1.into(), &0.into()));
     assert_near(number(&report["volume_after"]), 1000.0 - 512.0, 0.5);
-    assert_eq!(json["output"]["validity"]["bodies"], 2);
+    assert_eq!(json["result"]["output"]["validity"]["bodies"], 2);
     let said = run_in(&folder, &format!("{line} --drain 2@5,5,11 --drain 1.5@5,5,-1")).exits(0);
     said.says(&[
         "1 cavity with walls of 1",
@@ -264,20 +273,23 @@ fn inspect_weighs_a_cube_and_finds_what_hangs_over() {
     let folder = folder();
     let json = run_in(&folder, "inspect testdata/torus.ply --json").exits(0).json();
     let volume = number(&json["inputs"][0]["validity"]["volume"]);
-    assert_near(number(&json["mass"]["volume"]), volume, 1e-9 * volume);
+    assert_near(number(&json["result"]["mass"]["volume"]), volume, 1e-9 * volume);
     run_in(&folder, "repair testdata/inside_out_cube.stl -o OUT/cube.off").exits(0);
     let json = run_in(&folder, "inspect OUT/cube.off --json").exits(0).json();
     for axis in 0..3 {
-        assert_near(number(&json["mass"]["centre"][axis]), 5.0, 1e-9);
-        assert_near(number(&json["mass"]["moments"][axis]), 1000.0 * 200.0 / 12.0, 1e-6);
-        assert_near(number(&json["mass"]["inertia"][axis][axis]), 1000.0 * 200.0 / 12.0, 1e-6);
+        assert_near(number(&json["result"]["mass"]["centre"][axis]), 5.0, 1e-9);
+        assert_near(number(&json["result"]["mass"]["moments"][axis]), 1000.0 * 200.0 / 12.0, 1e-6);
+        assert_near(number(&json["result"]["mass"]["inertia"][axis][axis]), 1000.0 * 200.0 / 12.0, 1e-6);
     }
-    assert_eq!((&json["overhang"]["area"], &json["overhang"]["resting"]), (&0.0.into(), &100.0.into()));
+    assert_eq!(
+        (&json["result"]["overhang"]["area"], &json["result"]["overhang"]["resting"]),
+        (&0.0.into(), &100.0.into())
+    );
     // On its edge, two sides of 100 each hang over by exactly 45°, which is allowed, and not by 44°.
     run_in(&folder, "convert OUT/cube.off -o OUT/edge.off --rotate x=45").exits(0);
     let area = |degrees: &str| {
         let json = run_in(&folder, &format!("inspect OUT/edge.off --json --overhang {degrees}")).exits(0).json();
-        number(&json["overhang"]["area"])
+        number(&json["result"]["overhang"]["area"])
     };
     assert_near(area("45"), 0.0, 0.0);
     assert_near(area("44"), 200.0, 1e-9);
@@ -289,7 +301,7 @@ fn inspect_weighs_a_cube_and_finds_what_hangs_over() {
     }
     // An open mesh has no mass.
     let json = run_in(&folder, "inspect testdata/open_cube.off --json").exits(0).json();
-    assert!(json["mass"].is_null() && json["overhang"].is_null());
+    assert!(json["result"]["mass"].is_null() && json["result"]["overhang"].is_null());
     run_in(&folder, "inspect testdata/torus.ply --overhang 90").exits(2);
 }
 

@@ -19,6 +19,7 @@ fn help_lists_every_verb_and_every_exit_status() {
         "split",
         "render",
         "devices",
+        "schema",
         "130",
     ] {
         assert!(help.contains(word), "`{word}` is missing in:\n{help}");
@@ -134,7 +135,7 @@ fn errors_in_an_expression_point_at_the_column() {
         let (a, b) = (format!("a={}", sample("torus.ply").display()), format!("b={}", sample("torus.ply").display()));
         run(&["csg", expression, &a, &b, "-o", out.to_str().unwrap()]).exits(2)
     };
-    csg("a - (b | )").says(&["column 10", "expected a name or `(`", "\n  a - (b | )\n           ^\n"]);
+    csg("a - (b | )").says(&["column 10", "expected a name, a function or `(`", "\n  a - (b | )\n           ^\n"]);
     csg("a + b").says(&["column 3", "an operator", "\n    ^\n"]);
     csg("a | wheel & b").says(&["column 5", "no file is given for `wheel`", "the names given are a, b"]);
     csg("a").says(&["the expression does not use `b`"]);

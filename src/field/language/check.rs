@@ -2,8 +2,9 @@
 
 use super::FRAME;
 use super::error::LanguageError;
+use super::functions::FUNCTIONS;
 use super::syntax::{Form, Raw, Raws};
-use super::table::{Axis, FUNCTIONS, Function, Kind, List, Parameter, Presence, Preset, Signature};
+use super::table::{Axis, Function, Kind, List, Parameter, Presence, Preset};
 use super::tree::{Argument, Call, Node, NodeKind, Quantity, Span, Typed, check_range};
 
 type Result<T> = std::result::Result<T, LanguageError>;
@@ -37,9 +38,9 @@ impl Checker<'_> {
             Form::Name(name) => self.operand(name, raw.span, what)?,
             Form::Quantity(value, _) => return Err(self.not_a_field(raw, *value, what)),
             Form::Operator(function, fields) => {
-                let what = function.signature().to_string();
+                let what = function.to_string();
                 let fields = fields.iter().map(|field| self.field(field, &what)).collect::<Result<_>>()?;
-                NodeKind::Call(Call { function: *function, fields, arguments: Vec::new(), list: Vec::new() })
+                NodeKind::Call(Call { function, fields, arguments: Vec::new(), list: Vec::new() })
             }
             Form::Call { name, arguments, list } => {
                 let function = Function::by_name(name).ok_or_else(|| unknown_function(name, raw.span))?;
@@ -51,7 +52,7 @@ impl Checker<'_> {
 
     fn operand(&self, name: &str, span: Span, what: &str) -> Result<NodeKind> {
         let at = span.start;
-        if name == FRAME {
+        if name == FRAME && !self.names.contains(&FRAME) {
             let wanted = "a field, and t is a number".into();
             return Err(LanguageError::WrongKind { at, what: what.into(), wanted, found: name.into() });
         }
@@ -63,30 +64,29 @@ impl Checker<'_> {
 
     fn call(
         &self,
-        function: Function,
+        function: &'static Function,
         arguments: &[(Option<&str>, Raw<'_>)],
         list: Option<&Raws<'_>>,
         span: Span,
     ) -> Result<Call> {
-        let signature = function.signature();
-        let sorted = sort(signature, arguments)?;
+        let sorted = sort(function, arguments)?;
         let mut fields = Vec::new();
         for (n, raw) in sorted.fields.iter().enumerate() {
-            let what = match signature.fields.get(n) {
-                Some(name) => format!("{name} of {signature}"),
-                None => signature.to_string(),
+            let what = match function.fields.get(n) {
+                Some(name) => format!("{name} of {function}"),
+                None => function.to_string(),
             };
-            if signature.plain_name && !matches!(raw.form, Form::Name(_)) {
+            if function.takes_a_name() && !matches!(raw.form, Form::Name(_)) {
                 let wanted = "the name of a file".into();
                 return Err(LanguageError::WrongKind { at: raw.span.start, what, wanted, found: self.shown(raw.span) });
             }
             fields.push(self.field(raw, &what)?);
         }
-        let missing = |what| LanguageError::Missing { at: span.end - 1, what, signature: signature.to_string() };
-        if let Some(what) = signature.fields.get(fields.len()) {
+        let missing = |what| LanguageError::Missing { at: span.end - 1, what, signature: function.to_string() };
+        if let Some(what) = function.fields.get(fields.len()) {
             return Err(missing(what));
         }
-        let pairs = signature.parameters.iter().zip(&sorted.parameters);
+        let pairs = function.parameters.iter().zip(&sorted.parameters);
         let arguments: Result<Vec<Typed>> = pairs
             .map(|(parameter, raw)| match raw {
                 Some(raw) => self.argument(parameter, raw),
@@ -94,8 +94,8 @@ impl Checker<'_> {
             })
             .collect();
         let arguments = arguments?;
-        check_rivals(signature, &sorted.parameters)?;
-        let list = self.list(signature, list, fields.len(), span)?;
+        check_rivals(function, &sorted.parameters)?;
+        let list = self.list(function, list, fields.len(), span)?;
         Ok(Call { function, fields, arguments, list })
     }
 
@@ -125,24 +125,24 @@ impl Checker<'_> {
     }
 
     /// The numbers after the `;` of a call with `count` fields.
-    fn list(&self, signature: &Signature, given: Option<&Raws<'_>>, count: usize, call: Span) -> Result<Vec<f64>> {
-        let wanted = if signature.list == List::None { 0 } else { count };
+    fn list(&self, function: &Function, given: Option<&Raws<'_>>, count: usize, call: Span) -> Result<Vec<f64>> {
+        let wanted = if function.list == List::None { 0 } else { count };
         let numbers = match given {
             Some(raws) => raws.items.iter().map(|raw| self.number(raw)).collect::<Result<Vec<f64>>>()?,
-            None if signature.list == List::Weights => vec![1.0; count],
+            None if function.list == List::Weights => vec![1.0; count],
             None => Vec::new(),
         };
         let at = given.map_or(call.end - 1, |raws| raws.span.start);
         if numbers.len() != wanted {
             let found = numbers.len();
-            return Err(LanguageError::WrongCount { at, signature: signature.to_string(), wanted, found });
+            return Err(LanguageError::WrongCount { at, signature: function.to_string(), wanted, found });
         }
         let sum = numbers.iter().sum::<f64>();
-        if let Some(negative) = numbers.iter().find(|number| signature.list == List::Weights && **number < 0.0) {
+        if let Some(negative) = numbers.iter().find(|number| function.list == List::Weights && **number < 0.0) {
             let (what, wanted) = ("each weight".into(), "zero or more".into());
             return Err(LanguageError::OutOfRange { at, what, wanted, found: negative.to_string() });
         }
-        if signature.list == List::Weights && !(sum > 0.0 && sum.is_finite()) {
+        if function.list == List::Weights && !(sum > 0.0 && sum.is_finite()) {
             let (what, wanted) = ("the sum of the weights".into(), "above zero".into());
             return Err(LanguageError::OutOfRange { at, what, wanted, found: sum.to_string() });
         }
@@ -190,20 +190,20 @@ impl Checker<'_> {
 }
 
 /// Which argument is for what: fields first, then parameters in order, then parameters by name.
-fn sort<'r, 'a>(signature: &Signature, arguments: &'r [(Option<&str>, Raw<'a>)]) -> Result<Sorted<'r, 'a>> {
-    let room = if signature.more_fields { arguments.len() } else { signature.fields.len() };
-    let mut sorted = Sorted { fields: Vec::new(), parameters: vec![None; signature.parameters.len()] };
+fn sort<'r, 'a>(function: &Function, arguments: &'r [(Option<&str>, Raw<'a>)]) -> Result<Sorted<'r, 'a>> {
+    let room = if function.more_fields { arguments.len() } else { function.fields.len() };
+    let mut sorted = Sorted { fields: Vec::new(), parameters: vec![None; function.parameters.len()] };
     let (mut next, mut named) = (0, false);
     for (name, raw) in arguments {
         let at = raw.span.start;
         let number = match name {
             Some(name) => {
                 named = true;
-                signature.parameters.iter().position(|parameter| parameter.name == *name).ok_or_else(|| {
-                    LanguageError::UnknownParameter { at, name: name.to_string(), signature: signature.to_string() }
+                function.parameters.iter().position(|parameter| parameter.name == *name).ok_or_else(|| {
+                    LanguageError::UnknownParameter { at, name: name.to_string(), signature: function.to_string() }
                 })?
             }
-            None if named => return Err(LanguageError::Unnamed { at, signature: signature.to_string() }),
+            None if named => return Err(LanguageError::Unnamed { at, signature: function.to_string() }),
             None if sorted.fields.len() < room => {
                 sorted.fields.push(raw);
                 continue;
@@ -214,9 +214,9 @@ fn sort<'r, 'a>(signature: &Signature, arguments: &'r [(Option<&str>, Raw<'a>)])
             }
         };
         let slot = sorted.parameters.get_mut(number);
-        let slot = slot.ok_or_else(|| LanguageError::TooMany { at, signature: signature.to_string() })?;
+        let slot = slot.ok_or_else(|| LanguageError::TooMany { at, signature: function.to_string() })?;
         if slot.replace(raw).is_some() {
-            let name = signature.parameters[number].name;
+            let name = function.parameters[number].name;
             return Err(LanguageError::GivenTwice { at, name, other: name });
         }
     }
@@ -224,10 +224,10 @@ fn sort<'r, 'a>(signature: &Signature, arguments: &'r [(Option<&str>, Raw<'a>)])
 }
 
 /// Refuses a parameter that is given together with the one it replaces.
-fn check_rivals(signature: &Signature, given: &[Option<&Raw<'_>>]) -> Result<()> {
-    for (parameter, raw) in signature.parameters.iter().zip(given) {
+fn check_rivals(function: &Function, given: &[Option<&Raw<'_>>]) -> Result<()> {
+    for (parameter, raw) in function.parameters.iter().zip(given) {
         let (Presence::InsteadOf(other), Some(raw)) = (parameter.presence, raw) else { continue };
-        let both = signature.parameters.iter().zip(given).any(|(p, raw)| p.name == other && raw.is_some());
+        let both = function.parameters.iter().zip(given).any(|(p, raw)| p.name == other && raw.is_some());
         if both {
             return Err(LanguageError::GivenTwice { at: raw.span.start, name: parameter.name, other });
         }
@@ -250,7 +250,7 @@ fn left_away(parameter: &Parameter, span: Span) -> Option<Typed> {
 
 fn unknown_function(name: &str, span: Span) -> LanguageError {
     let distance = |candidate: &str| strsim::damerau_levenshtein(name, candidate);
-    let near = FUNCTIONS.iter().map(|signature| (distance(signature.name), signature.name));
+    let near = FUNCTIONS.iter().map(|function| (distance(function.name), function.name));
     let nearest = near.filter(|(distance, _)| *distance <= NEAR).min_by_key(|(distance, _)| *distance);
     LanguageError::UnknownFunction { at: span.start, name: name.into(), nearest: nearest.map(|(_, name)| name) }
 }

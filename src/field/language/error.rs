@@ -1,5 +1,6 @@
 //! What is wrong with a text, and where.
 
+use super::functions::COMPLEMENT;
 use super::table::Function;
 
 /// Why the text is no field over the given names. Positions are bytes from the start.
@@ -152,6 +153,14 @@ pub enum LanguageError {
         /// Why, in words of who knows the model.
         reason: String,
     },
+    /// A function that makes no solid of solids, where a boolean expression is wanted.
+    #[error("`{function}` is no boolean operation")]
+    NotBoolean {
+        /// Where.
+        at: usize,
+        /// Which.
+        function: &'static Function,
+    },
     /// `t` where there is one picture only.
     #[error("`t` has no value here: it runs from 0 to 1 over the frames of a sequence")]
     NoFrame {
@@ -179,6 +188,7 @@ impl LanguageError {
             | Self::OutOfRange { at, .. }
             | Self::WrongCount { at, .. }
             | Self::Quantity { at, .. }
+            | Self::NotBoolean { at, .. }
             | Self::NoFrame { at } => Some(*at),
         }
     }
@@ -187,7 +197,7 @@ impl LanguageError {
     pub fn hint(&self) -> Option<String> {
         match self {
             Self::UnknownName { name, known, .. } => Some(match Function::by_name(name) {
-                Some(function) => format!("`{name}` is a function: {}", function.signature()),
+                Some(function) => format!("`{name}` is a function: {}", function),
                 None if known.is_empty() => format!("give it one: {name}=FILE"),
                 None => format!("the names given are {}", known.join(", ")),
             }),
@@ -197,6 +207,12 @@ impl LanguageError {
                 Some(nearest) => format!("did you mean `{nearest}`?"),
                 None => "--help lists all functions".into(),
             }),
+            Self::NotBoolean { function, .. } if **function == COMPLEMENT => {
+                Some("what is outside has no end: `a - b` is what is inside a and outside b".into())
+            }
+            Self::NotBoolean { .. } => {
+                Some("names joined by `|`, `&`, `-` and `^`; `meshwright field` takes all functions".into())
+            }
             Self::NoFrame { .. } => Some("--frames N, or a number instead of `t`".into()),
             _ => None,
         }

@@ -2,11 +2,12 @@
 
 use std::fmt;
 
-use super::table::{Axis, FUNCTIONS, Kind, List, Parameter, Presence, Preset, Signature};
+use super::functions::FUNCTIONS;
+use super::table::{Axis, Function, Kind, List, Parameter, Presence, Preset};
 
 /// The functions as `--help` lists them: how each is written, and below that what it gives.
 pub fn help() -> String {
-    FUNCTIONS.iter().map(|signature| format!("  {signature}\n      {}\n", signature.help)).collect()
+    FUNCTIONS.iter().map(|function| format!("  {function}\n      {}\n", function.help)).collect()
 }
 
 /// The functions as a table in Markdown.
@@ -14,7 +15,7 @@ pub fn markdown() -> String {
     let head = "| function | takes | gives |\n|---|---|---|\n".to_string();
     let rows = FUNCTIONS
         .iter()
-        .map(|signature| format!("| `{signature}` | {} | {} |\n", takes(signature), escaped(signature.help)));
+        .map(|function| format!("| `{function}` | {} | {} |\n", takes(function), escaped(function.help)));
     head + &rows.collect::<String>()
 }
 
@@ -24,16 +25,16 @@ fn escaped(text: &str) -> String {
 }
 
 /// What its parameters take; those in a row that take the same are told of together.
-fn takes(signature: &Signature) -> String {
+fn takes(function: &Function) -> String {
     let mut parts: Vec<String> = Vec::new();
-    if signature.plain_name {
+    if function.takes_a_name() {
         parts.push("name: that of a file".into());
     }
-    for alike in signature.parameters.chunk_by(|a, b| a.kind == b.kind) {
+    for alike in function.parameters.chunk_by(|a, b| a.kind == b.kind) {
         let names: Vec<&str> = alike.iter().map(|parameter| parameter.name).collect();
         parts.push(format!("{}: {}", names.join(", "), alike[0].kind));
     }
-    match signature.list {
+    match function.list {
         List::None => {}
         List::Weights => parts.push("weights: a number for each, by default all the same".into()),
         List::Values => parts.push("values: a number for each".into()),
@@ -42,7 +43,7 @@ fn takes(signature: &Signature) -> String {
 }
 
 /// As it is called: `filter(a, cap=5%, [width], [sigma], samples=64)`.
-impl fmt::Display for Signature {
+impl fmt::Display for Function {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let fields = self.fields.iter().map(|name| name.to_string());
         let more = self.more_fields.then(|| "...".to_string());

@@ -10,6 +10,7 @@ use winnow::token::{any, one_of, take_while};
 use winnow::{ModalResult, Parser};
 
 use super::error::LanguageError;
+use super::functions::{COMPLEMENT, DIFFERENCE, INTERSECTION, SYMMETRIC_DIFFERENCE, UNION};
 use super::table::Function;
 use super::tree::Span;
 
@@ -31,7 +32,7 @@ pub(super) enum Form<'a> {
     /// Infinite where the digits are beyond all numbers.
     Quantity(f64, &'a str),
     /// What an operator is short for.
-    Operator(Function, Vec<Raw<'a>>),
+    Operator(&'static Function, Vec<Raw<'a>>),
     Call {
         name: &'a str,
         /// With the names of those that have one.
@@ -84,17 +85,17 @@ fn tree<'a>(input: &mut Input<'a>) -> ModalResult<Raw<'a>> {
     // Without a second way to read anything, the first error is the error, and its place the place.
     expression(cut_err(operand))
         .infix(dispatch! { operator;
-            '|' => Infix::Left(1, |_: &mut Input<'a>, a, b| Ok(join(Function::Union, a, b))),
-            '^' => Infix::Left(2, |_: &mut Input<'a>, a, b| Ok(join(Function::SymmetricDifference, a, b))),
-            '&' => Infix::Left(3, |_: &mut Input<'a>, a, b| Ok(join(Function::Intersection, a, b))),
-            '-' => Infix::Left(4, |_: &mut Input<'a>, a, b| Ok(join(Function::Difference, a, b))),
+            '|' => Infix::Left(1, |_: &mut Input<'a>, a, b| Ok(join(&UNION, a, b))),
+            '^' => Infix::Left(2, |_: &mut Input<'a>, a, b| Ok(join(&SYMMETRIC_DIFFERENCE, a, b))),
+            '&' => Infix::Left(3, |_: &mut Input<'a>, a, b| Ok(join(&INTERSECTION, a, b))),
+            '-' => Infix::Left(4, |_: &mut Input<'a>, a, b| Ok(join(&DIFFERENCE, a, b))),
             _ => fail,
         })
         .parse_next(input)
 }
 
 /// `a - b - c` is one difference of three: long chains make no deep trees.
-fn join<'a>(operator: Function, left: Raw<'a>, right: Raw<'a>) -> Raw<'a> {
+fn join<'a>(operator: &'static Function, left: Raw<'a>, right: Raw<'a>) -> Raw<'a> {
     let span = Span { start: left.span.start, end: right.span.end };
     let fields = match left.form {
         Form::Operator(same, mut fields) if same == operator => {
@@ -114,7 +115,7 @@ fn operand<'a>(input: &mut Input<'a>) -> ModalResult<Raw<'a>> {
     if minuses % 2 == 1 {
         raw.form = match raw.form {
             Form::Quantity(value, suffix) => Form::Quantity(-value, suffix),
-            form => Form::Operator(Function::Complement, vec![Raw { span: raw.span, form }]),
+            form => Form::Operator(&COMPLEMENT, vec![Raw { span: raw.span, form }]),
         };
     }
     Ok(raw)
@@ -135,6 +136,11 @@ fn quantity<'a>(input: &mut Input<'a>) -> ModalResult<Form<'a>> {
     let number = (digits, exponent).take().parse_to::<f64>().parse_next(input)?;
     let mut suffix = opt(preceded(spaces, take_while(1.., |c: char| c.is_alphabetic() || matches!(c, '%' | '"'))));
     Ok(Form::Quantity(number, suffix.parse_next(input)?.unwrap_or_default()))
+}
+
+/// Whether `text` can be the name of an operand.
+pub(super) fn is_name(text: &str) -> bool {
+    name.parse(LocatingSlice::new(text)).is_ok()
 }
 
 fn name<'a>(input: &mut Input<'a>) -> ModalResult<&'a str> {

@@ -261,8 +261,8 @@ fn monstrous_texts_are_refused_before_they_recurse() {
 
 #[test]
 fn the_table_can_be_read_one_way_only() {
-    for signature in &FUNCTIONS {
-        assert_eq!(Function::by_name(signature.name), Some(signature.function));
+    for signature in FUNCTIONS.iter().copied() {
+        assert_eq!(Function::by_name(signature.name), Some(signature));
         assert!(
             !signature.more_fields || signature.parameters.is_empty(),
             "where would the fields of {signature} end?"
@@ -299,8 +299,9 @@ fn argument(kind: Kind) -> BoxedStrategy<String> {
 }
 
 /// A text for the call of `signature` with fields taken from `fields`.
-fn call_text(signature: &'static Signature, fields: BoxedStrategy<String>) -> BoxedStrategy<String> {
-    let fields = if signature.plain_name { select(NAMES.to_vec()).prop_map(str::to_string).boxed() } else { fields };
+fn call_text(signature: &'static Function, fields: BoxedStrategy<String>) -> BoxedStrategy<String> {
+    let fields =
+        if signature.takes_a_name() { select(NAMES.to_vec()).prop_map(str::to_string).boxed() } else { fields };
     let count = signature.fields.len();
     let counts = if signature.more_fields { count..=count + 2 } else { count..=count };
     let parameters: Vec<BoxedStrategy<(&Parameter, String, Index)>> = signature
@@ -344,7 +345,7 @@ fn right_texts() -> impl Strategy<Value = String> {
         prop_oneof![
             join.prop_map(|(operator, a, b)| format!("{a}{operator}{b}")),
             field.clone().prop_map(|a| format!("-({a} )")),
-            select(FUNCTIONS.iter().collect::<Vec<_>>()).prop_flat_map(move |s| call_text(s, field.clone().boxed())),
+            select(FUNCTIONS.to_vec()).prop_flat_map(move |s| call_text(s, field.clone().boxed())),
         ]
     })
 }

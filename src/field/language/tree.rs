@@ -5,7 +5,8 @@ use std::fmt;
 use std::ops::Range;
 
 use super::error::LanguageError;
-use super::table::{Axis, Function, Kind, List, Parameter};
+use super::table::{Axis, Function, Gives, Kind, List, Parameter, Reading};
+use crate::ldi::Expression;
 
 /// A piece of the text, in bytes from its start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -45,14 +46,14 @@ pub enum NodeKind<A = Typed> {
     Call(Call<A>),
 }
 
-/// A call of a function, with all that the function's [`Signature`](super::Signature) asks for.
+/// A call of a function, with all that the function asks for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Call<A = Typed> {
     /// Of which function.
-    pub function: Function,
-    /// Its fields, as many as the signature asks for.
+    pub function: &'static Function,
+    /// Its fields, as many as the function asks for.
     pub fields: Vec<Node<A>>,
-    /// Its arguments, one for each parameter of the signature.
+    /// Its arguments, one for each parameter of the function.
     pub arguments: Vec<A>,
     /// Weights or values, one for each field; empty for functions that take none.
     pub list: Vec<f64>,
@@ -118,7 +119,7 @@ pub enum Place {
 impl<A> Call<A> {
     /// The argument for the parameter called `name`; `None` if the function has none of that name.
     pub fn argument(&self, name: &str) -> Option<&A> {
-        let number = self.function.signature().parameters.iter().position(|parameter| parameter.name == name)?;
+        let number = self.function.parameters.iter().position(|parameter| parameter.name == name)?;
         self.arguments.get(number)
     }
 }
@@ -127,6 +128,11 @@ impl Call<Value> {
     /// The length called `name`, model units; `None` where it is absent.
     pub fn length(&self, name: &str) -> Option<f64> {
         if let Value::Length(length) = self.argument(name)? { Some(*length) } else { None }
+    }
+
+    /// The length called `name`, model units; zero where it is absent.
+    pub fn length_or_zero(&self, name: &str) -> f64 {
+        self.length(name).unwrap_or_default()
     }
 
     /// The number called `name`.
@@ -142,6 +148,11 @@ impl Call<Value> {
     /// The axis called `name`.
     pub fn axis(&self, name: &str) -> Option<Axis> {
         if let Value::Axis(axis) = self.argument(name)? { Some(*axis) } else { None }
+    }
+
+    /// The number of the axis called `name`, 0 to 2; that of z where the function has none.
+    pub fn axis_or_z(&self, name: &str) -> usize {
+        self.axis(name).unwrap_or(Axis::Z).number()
     }
 
     /// The coordinate called `name`.
@@ -193,8 +204,7 @@ impl Node {
 impl<A> Node<A> {
     /// Whether its values are no distances to a shape, but measures of something else.
     pub fn is_measure(&self) -> bool {
-        let measures = [Function::Material, Function::Compare];
-        let of_call = |call: &Call<A>| measures.contains(&call.function) || call.fields.iter().any(Self::is_measure);
+        let of_call = |call: &Call<A>| call.function.measure || call.fields.iter().any(Self::is_measure);
         matches!(&self.kind, NodeKind::Call(call) if of_call(call))
     }
 
@@ -206,15 +216,43 @@ impl<A> Node<A> {
         }
     }
 
+    /// Which operands it uses, and how each is read; in the order in which they stand in the text.
+    pub fn readings(&self) -> Vec<(usize, Reading)> {
+        let call = match &self.kind {
+            NodeKind::Name { operand, .. } => return vec![(*operand, Reading::Usual)],
+            NodeKind::Call(call) => call,
+        };
+        let of_fields = call.fields.iter().flat_map(Self::readings);
+        match call.function.gives {
+            Gives::Made(_) => of_fields.collect(),
+            Gives::Read(reading) => of_fields.map(|(operand, _)| (operand, reading)).collect(),
+        }
+    }
+
+    /// The boolean expression that it is, over the same operands.
+    ///
+    /// # Errors
+    /// [`LanguageError::NotBoolean`] at the first function that is no boolean operation.
+    pub fn boolean(&self) -> Result<Expression, LanguageError> {
+        let call = match &self.kind {
+            NodeKind::Name { operand, .. } => return Ok(Expression::Operand(*operand)),
+            NodeKind::Call(call) => call,
+        };
+        let other = || LanguageError::NotBoolean { at: self.span.start, function: call.function };
+        let join = call.function.boolean.ok_or_else(other)?;
+        let parts = call.fields.iter().map(Self::boolean).collect::<Result<Vec<_>, _>>()?;
+        parts.into_iter().reduce(join).ok_or_else(other)
+    }
+
     /// The same tree with other arguments.
     fn map<B>(&self, change: &mut Change<'_, A, B>) -> Result<Node<B>, LanguageError> {
         let kind = match &self.kind {
             NodeKind::Name { operand, name } => NodeKind::Name { operand: *operand, name: name.clone() },
             NodeKind::Call(Call { function, fields, arguments, list }) => {
                 let fields = fields.iter().map(|field| field.map(change)).collect::<Result<_, _>>()?;
-                let pairs = function.signature().parameters.iter().zip(arguments);
+                let pairs = function.parameters.iter().zip(arguments);
                 let arguments = pairs.map(|(what, argument)| change(what, argument)).collect::<Result<_, _>>()?;
-                NodeKind::Call(Call { function: *function, fields, arguments, list: list.clone() })
+                NodeKind::Call(Call { function, fields, arguments, list: list.clone() })
             }
         };
         Ok(Node { span: self.span, kind })
@@ -280,14 +318,14 @@ impl fmt::Display for Node {
 
 impl fmt::Display for Call {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let signature = self.function.signature();
-        write!(f, "{}(", signature.name)?;
+        let function = self.function;
+        write!(f, "{}(", function.name)?;
         let (mut separator, mut named) = ("", false);
         for field in &self.fields {
             write!(f, "{separator}{field}")?;
             separator = ", ";
         }
-        for (parameter, typed) in signature.parameters.iter().zip(&self.arguments) {
+        for (parameter, typed) in function.parameters.iter().zip(&self.arguments) {
             let text = match &typed.argument {
                 Argument::Quantity(quantity) => quantity.to_string(),
                 Argument::Axis(axis) => axis.to_string(),
@@ -304,7 +342,7 @@ impl fmt::Display for Call {
             f.write_str(&text)?;
             separator = ", ";
         }
-        if signature.list != List::None {
+        if function.list != List::None {
             let numbers: Vec<String> = self.list.iter().map(f64::to_string).collect();
             write!(f, "; {}", numbers.join(", "))?;
         }

@@ -146,7 +146,7 @@ impl TextureMap {
     }
 
     /// Whether `other` has the same coordinates, and materials and images as far as a file of `format` holds them.
-    pub(crate) fn is_held(&self, other: Option<&Self>, format: Format) -> bool {
+    pub fn is_held(&self, other: Option<&Self>, format: Format) -> bool {
         if matches!(format, Format::Stl | Format::Off) || !self.shows_anything() {
             return true;
         }

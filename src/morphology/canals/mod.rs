@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::closed::{BESIDE, samples};
-use super::{Balls, Body, Centres, OffsetError, Region};
+use super::{Balls, Centres, Gauge, OffsetError, Region};
 use crate::lattice::{Grid, Lattice};
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::Progress;
@@ -21,6 +21,7 @@ use fill::{Fill, FilledPart};
 
 /// Where a canal leads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum CanalKind {
     /// The canal leads through the solid: filling it takes handles away.
@@ -49,6 +50,7 @@ impl std::fmt::Display for CanalKind {
 
 /// One canal. All its measures are in model units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Canal {
     /// The number of the canal, counted from 1; the widest has the lowest.
     pub number: u32,
@@ -103,7 +105,7 @@ impl Canals {
 /// # Errors
 /// Those of [`crate::sdf::exact::exact`], and a stop.
 pub fn canals(
-    original: &Body<'_>,
+    original: &Gauge<'_>,
     (balls, centres): (&Balls<'_>, &Centres),
     lattice: &Lattice,
     progress: &Progress,

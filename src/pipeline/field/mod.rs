@@ -14,17 +14,17 @@ use super::frame::Frame;
 use super::offsets::volume;
 use super::stages::Stages;
 use super::{
-    BooleanError, DistanceError, DistanceReport, Draft, Dropped, LatticeError, LimitError, Options, Outcome, Report,
+    BooleanError, DistanceError, DistanceReport, Draft, LatticeError, LimitError, Options, Outcome, Report,
     TriangleCounts, TriangleSource, VoxelSize, refine, sizing,
 };
 use crate::contour::Ground;
 use crate::digits;
-use crate::field::filter::FilterError;
-use crate::field::{Extent, Field, FillError, FillOptions, LevelError, Shared, fill, level};
-use crate::fit::{Facets, FitReport, fit};
+use crate::field::language::{self, BuildError};
+use crate::field::{Field, FillError, FillOptions, LevelError, Shared, fill, level};
+use crate::fit::{Facets, fit};
 use crate::ldi::{Evidence, MAX_VOXELS};
 use crate::mesh::{Bounds, IndexError, NotSolid, SolidError};
-use crate::progress::{Progress, Stopped};
+use crate::progress::{Progress, Stage, Stopped};
 use crate::sdf::exact::Band;
 
 /// A lattice that cuts a shape off grows by this part of the shape's extent.
@@ -49,38 +49,12 @@ pub enum FieldError {
     /// More memory would be needed than allowed.
     #[error(transparent)]
     Limit(#[from] LimitError),
-    /// The shape has no inside.
-    #[error("the field is nowhere negative: nothing is inside")]
-    Nothing,
     /// No voxel is inside.
     #[error("the field is nowhere negative on the lattice: nothing is inside, or it is thinner than a voxel")]
     NothingOnLattice,
-    /// The shape has no end.
-    #[error("the shape has no end: intersect it with one that has (`... & box(...)`)")]
-    Endless,
-    /// A ramp begins where it ends.
-    #[error("a ramp from {from} to {to} has no length")]
-    NoRamp {
-        /// Where it begins.
-        from: f64,
-        /// Where it ends.
-        to: f64,
-    },
-    /// A tree that no parser made: a call has fewer fields than its function takes.
-    #[error("a call has fewer fields than its function takes")]
-    MissingField,
-    /// A shape that is to be aligned has no size.
-    #[error("a shape without a size cannot be aligned")]
-    NoSize,
-    /// A shape that is to be weighted by its radius has none.
-    #[error("a shape without an inside has no radius to be weighted by")]
-    NoRadius,
-    /// Points are scattered where nothing is.
-    #[error("points are scattered in the box of the operands and bodies before them, and there are none")]
-    NoBox,
-    /// A filter cannot be.
+    /// A function of the expression cannot be made.
     #[error(transparent)]
-    Filter(#[from] FilterError),
+    Build(BuildError),
     /// An operand could not be repaired.
     #[error(transparent)]
     Repair(BooleanError),
@@ -97,6 +71,7 @@ pub enum FieldError {
 
 /// What a field was made of, and what became of it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FieldReport {
     /// What was done to the operands before they became fields.
     pub operands: Vec<OperandReport>,
@@ -104,14 +79,11 @@ pub struct FieldReport {
     pub made: usize,
     /// Volume of the result, cubic model units.
     pub volume: f64,
-    /// Sharp edges and simplification; `None` without a fit.
-    pub fit: Option<FitReport>,
-    /// Surfaces smaller than the caller wants, see [`crate::pipeline::drop_smaller`].
-    pub smaller: Dropped,
 }
 
 /// How an operand became a field.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OperandReport {
     /// Number of the operand.
     pub operand: usize,
@@ -129,8 +101,8 @@ pub fn field_surface(
     progress: &Progress,
 ) -> Result<(Outcome, FieldReport), FieldError> {
     let mut stages = Stages::new(progress);
-    stages.begin("field")?;
-    let extent = shape_extent(&built.field)?;
+    stages.begin(Stage::Field)?;
+    let extent = language::shape_extent(&built.field)?;
     let h = field_spacing(built, options)?;
     let frame = Frame::of_box(&extent, &options.surface());
     let mut extent = frame.local_bounds(&extent);
@@ -144,7 +116,7 @@ pub fn field_surface(
         }
         tries += 1;
         if tries == MOST_TRIES {
-            return Err(FieldError::Endless);
+            return Err(BuildError::Endless.into());
         }
         let room = MORE_ROOM * extent.size().max_element();
         extent = Bounds { min: extent.min - room, max: extent.max + room };
@@ -162,11 +134,11 @@ pub fn field_surface(
     let target = |p: DVec3| off(field, p, lattice.h);
     let source = &*frame.local(&sources.mesh);
     let facets = Facets::new(source, level.planes).with_target(&target);
-    stages.begin("collapse")?;
+    stages.begin(Stage::Collapse)?;
     let mut surface = refine::merged(contour, &facets, &lattice, &options.surface(), progress)?;
     let mut fitted = None;
     if let Some(options) = options.fit {
-        stages.begin("fit")?;
+        stages.begin(Stage::Fit)?;
         let options = crate::fit::FitOptions { keep: false, ..options };
         let (fit, report) = fit(&surface, &facets, &Evidence::default(), lattice.h, &options, progress)?;
         (surface, fitted) = (fit, Some(report));
@@ -178,19 +150,13 @@ pub fn field_surface(
         voxel: lattice.h,
         dims: lattice.dims.to_array(),
         lattice: true,
-        fit: fitted.clone(),
+        fit: fitted,
         closed_triangles: made,
         triangles: TriangleCounts { kept: 0, rebuilt: origins.len() - made, made_up: made },
         stages: stages.finish(),
         ..Report::default()
     };
-    let account = FieldReport {
-        operands: built.operands.clone(),
-        made,
-        volume: volume(&surface.mesh),
-        fit: fitted,
-        smaller: Dropped::default(),
-    };
+    let account = FieldReport { operands: built.operands.clone(), made, volume: volume(&surface.mesh) };
     let draft = Draft { mesh: surface.mesh, sources: origins, lattice, report };
     Ok((draft.global(&frame).judged(&[], progress)?, account))
 }
@@ -228,8 +194,8 @@ pub fn field_grid(
     progress: &Progress,
 ) -> Result<DistanceOutcome, FieldError> {
     let mut stages = Stages::new(progress);
-    stages.begin("field")?;
-    let extent = built.field.extent().bounds().or(built.parts).ok_or(FieldError::Endless)?;
+    stages.begin(Stage::Field)?;
+    let extent = built.field.extent().bounds().or(built.parts).ok_or(BuildError::Endless)?;
     let frame = Frame::of_box(&extent, &options.surface());
     let mut lattice = sizing::lattice(&frame.local_bounds(&extent), options.voxel)?;
     let h = lattice.h;
@@ -264,20 +230,12 @@ pub fn field_values(field: &Shared, points: &[DVec3]) -> Vec<f64> {
     points.par_chunks(64).flat_map_iter(packet).collect()
 }
 
-/// The box that holds the shape.
-fn shape_extent(field: &Shared) -> Result<Bounds, FieldError> {
-    match field.extent() {
-        Extent::Unbounded => Err(FieldError::Endless),
-        extent => extent.bounds().ok_or(FieldError::Nothing),
-    }
-}
-
 /// The voxel spacing that [`field_surface`] takes, model units.
 ///
 /// # Errors
 /// Those of [`field_surface`].
 pub fn field_spacing(built: &Built, options: &Options) -> Result<f64, FieldError> {
-    Ok(sizing::lattice(&shape_extent(&built.field)?, options.voxel)?.h)
+    Ok(sizing::lattice(&language::shape_extent(&built.field)?, options.voxel)?.h)
 }
 
 impl From<FillError> for FieldError {
@@ -287,6 +245,16 @@ impl From<FillError> for FieldError {
             FillError::Memory { needed, allowed } => {
                 LimitError::Memory { needed, allowed, voxel_that_fits: None }.into()
             }
+        }
+    }
+}
+
+impl From<BuildError> for FieldError {
+    fn from(error: BuildError) -> Self {
+        match error {
+            BuildError::Stopped(stopped) => Self::Stopped(stopped),
+            BuildError::Fill(error) => error.into(),
+            other => Self::Build(other),
         }
     }
 }

@@ -16,6 +16,7 @@ const SECONDS_PER_TRIANGLE: f64 = 2e-6;
 
 /// What [`super::exact`] would cost.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Cost {
     /// Voxels of active bricks.
     pub voxels: u64,

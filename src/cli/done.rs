@@ -1,0 +1,109 @@
+//! What was done to a mesh, in words.
+
+use super::words::{self, UnitName};
+use crate::morphology::Operation;
+use crate::pipeline::{DrainReport, HollowReport, Report, ThickenReport, TriangleKind};
+
+/// What was done, one part of a sentence each.
+pub fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
+    let sum = |field: fn(&crate::orient::OrientReport) -> usize| pipeline.orient.iter().map(field).sum::<usize>();
+    let mut parts = Vec::new();
+    let mut add = |n: usize, word: &str, what: &str| {
+        if n > 0 {
+            parts.push(format!("{} {what}", words::plural(n, word)));
+        }
+    };
+    add(sum(|o| o.degenerate_dropped), "triangle", "without area dropped");
+    add(sum(|o| o.duplicates_dropped), "repeated triangle", "dropped");
+    add(sum(|o| o.both_sided), "triangle", "present in both directions counted once");
+    add(sum(|o| o.flipped_in_patches), "triangle", "turned over to agree with the neighbours");
+    add(sum(|o| o.flipped_patches), "patch", "turned over as a whole");
+    if pipeline.ldi.silent_rays > 0 {
+        let share = words::percent(pipeline.ldi.silent_rays, pipeline.ldi.rays);
+        parts.push(format!("{share} of the test rays met a hole or a crack, where those in other directions decided"));
+    }
+    parts.extend(kept(pipeline));
+    if let Some(fit) = pipeline.fit.as_ref().filter(|fit| fit.kept < fit.of) {
+        let points = words::plural(fit.inserted + fit.moved, "point");
+        let given_up = match fit.given_up {
+            0 => String::new(),
+            n => format!("; {} left rough, where no sharp edge could be fitted", words::plural(n, "place")),
+        };
+        parts.push(format!("{points} set on edges and corners{given_up}"));
+    }
+    if let Some(canals) = pipeline.canals.as_ref().filter(|canals| !canals.removed.is_empty()) {
+        let volume = pipeline.morphology.as_ref().map(|m| words::percent_change(m.volume_before, m.volume_after));
+        let (filled, all) = (words::count(canals.removed.len()), words::plural(canals.canals.len(), "canal"));
+        parts.push(format!("{filled} of {all} filled (--map shows where): volume {}", volume.unwrap_or_default()));
+    } else if let Some(change) = &pipeline.morphology {
+        let by = words::length(change.radius, unit);
+        let word = match change.operation {
+            Operation::Dilate => "grown by",
+            Operation::Erode => "shrunk by",
+            Operation::Close => "closed by a ball of",
+            Operation::Open => "opened by a ball of",
+        };
+        let volume = words::percent_change(change.volume_before, change.volume_after);
+        parts.push(format!("{word} {by}: volume {volume}; {} new", words::plural(change.made, "triangle")));
+    } else if let Some(hollow) = &pipeline.hollow {
+        parts.extend(hollowed(hollow, unit));
+    } else if let Some(thick) = &pipeline.thicken {
+        parts.push(thickened(thick, pipeline.closed_triangles, unit));
+    }
+    parts
+}
+
+/// What stayed as it is.
+fn kept(pipeline: &Report) -> Vec<String> {
+    let standing = &pipeline.standing;
+    let mut parts = Vec::new();
+    if standing.left_out > 0 {
+        let shells = words::plural(standing.left_out, "closed surface");
+        parts.push(format!("{shells} left out, inside of others or outside of the result"));
+    }
+    let counts = &pipeline.triangles;
+    parts.push(match (counts.rebuilt, counts.made_up) {
+        (0, 0) => "every triangle was kept as it is".into(),
+        _ => {
+            let of = |kind: TriangleKind| format!("{} {}", words::count(counts.count(kind)), kind.word());
+            format!("of its triangles {} (--map shows which)", TriangleKind::ALL.map(of).join(", "))
+        }
+    });
+    parts
+}
+
+fn thickened(thick: &ThickenReport, made: usize, unit: UnitName<'_>) -> String {
+    let least = words::length(thick.least, unit);
+    if thick.thin_area == 0.0 && thick.sheet_area == 0.0 {
+        return format!("nothing is thinner than {least}");
+    }
+    let sheets = if thick.sheet_area > 0.0 { " and open sheets" } else { "" };
+    let volume = if thick.volume_before > 0.0 {
+        format!("volume {}", words::percent_change(thick.volume_before, thick.volume_after))
+    } else {
+        "there was no solid before".into()
+    };
+    let made = words::plural(made, "triangle");
+    format!("walls{sheets} grown to {least}: {volume}; {made} new")
+}
+
+/// What was done, in words.
+fn hollowed(found: &HollowReport, unit: UnitName<'_>) -> Vec<String> {
+    let (wall, cavities) = (words::length(found.wall, unit), words::plural(found.cavities, "cavity"));
+    let saved = words::volume(found.volume_before - found.volume_after, unit);
+    let share = words::percent_change(found.volume_before, found.volume_after);
+    let mut parts = vec![format!("{cavities} with walls of {wall}: {saved} saved (volume {share})")];
+    if found.left_out > 0 {
+        parts.push(format!("{} of under 64 voxels not made", words::plural(found.left_out, "cavity")));
+    }
+    let drain = |drain: &DrainReport| {
+        let place = |p: [f64; 3]| p.map(words::number).join(" ");
+        let (diameter, depth) = (words::length(drain.diameter, unit), words::length(drain.depth, unit));
+        format!("a drain of {diameter}, {depth} deep, from {} along {}", place(drain.at), place(drain.direction))
+    };
+    parts.extend(found.drains.iter().map(drain));
+    if !found.drains.is_empty() {
+        parts.push("what the drains cut of the surface was built anew, the rest is as said above".into());
+    }
+    parts
+}

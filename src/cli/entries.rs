@@ -1,0 +1,122 @@
+//! What reports say of files, lattices, slices and graphics adapters.
+
+use serde::Serialize;
+
+use crate::mesh::Validity;
+
+/// One input in the report.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct InputEntry {
+    /// The path as given.
+    pub path: String,
+    /// Its name in the expression, for `csg`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// The format it was read as.
+    pub format: String,
+    /// Size of the file.
+    pub bytes: u64,
+    /// SHA-256 of the file.
+    pub sha256: String,
+    /// The unit the file carries.
+    pub unit: Option<String>,
+    /// Its objects.
+    pub parts: Vec<PartEntry>,
+    /// Its objects that are taken away from the others.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub negative_parts: Vec<PartEntry>,
+    /// What the reader found odd.
+    pub warnings: Vec<String>,
+    /// Its state as read.
+    pub validity: Option<Validity>,
+}
+
+/// An object within a file.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PartEntry {
+    /// Its name.
+    pub name: String,
+    /// Its triangles.
+    pub triangles: usize,
+}
+
+/// The output in the report.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct OutputEntry {
+    /// The path as given.
+    pub path: String,
+    /// The format it was written in.
+    pub format: String,
+    /// Size of the file.
+    pub bytes: u64,
+    /// SHA-256 of the file.
+    pub sha256: String,
+    /// The unit of its numbers, where known.
+    pub unit: Option<String>,
+    /// Its state, read back from the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub validity: Option<Validity>,
+}
+
+/// A lattice in the report, in the unit of the run.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct GridEntry {
+    /// Voxels along x, y, z.
+    pub dims: [usize; 3],
+    /// Where the first voxel lies.
+    pub origin: [f64; 3],
+    /// From one voxel to the next.
+    pub spacing: f64,
+    /// Values are clamped to ± this, where the file says so.
+    pub band: Option<f64>,
+    /// The smallest and the largest value.
+    pub range: [f64; 2],
+    /// Voxels below zero, which is inside.
+    pub inside: u64,
+    /// Their volume.
+    pub inside_volume: f64,
+    /// Voxels whose values are stored one by one.
+    pub stored: u64,
+}
+
+/// A slice in the report.
+#[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct SliceEntry {
+    /// The input.
+    pub path: String,
+    /// The axis that the plane is across: `x`, `y` or `z`.
+    pub axis: &'static str,
+    /// Where on the axis, model units.
+    pub at: f64,
+    /// The smallest and the largest value seen, model units; nothing where the plane misses the grid.
+    pub range: Option<[f64; 2]>,
+    /// How far from zero colours are full, model units.
+    pub full: f64,
+    /// From one line to the next, model units.
+    pub step: f64,
+}
+
+/// The adapters, and which ones would be taken.
+#[derive(Debug, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct DeviceReport {
+    /// Whether the program was built with the feature `gpu`.
+    pub built: bool,
+    /// The adapters.
+    #[cfg(feature = "gpu")]
+    pub adapters: Vec<crate::gpu::AdapterEntry>,
+    /// The adapters: a build without the feature `gpu` finds none.
+    #[cfg(not(feature = "gpu"))]
+    pub adapters: [(); 0],
+    /// Name of the one that `--backend auto` takes for large jobs.
+    pub auto: Option<String>,
+    /// Name of the one that `--backend gpu` takes.
+    pub gpu: Option<String>,
+    /// Why, in a sentence.
+    pub why: String,
+}

@@ -1,0 +1,45 @@
+//! Where the report goes.
+
+use std::path::Path;
+
+use super::exit::Failure;
+use super::report::RunReport;
+use super::session::Session;
+use super::shared_args::CommonArgs;
+use super::streams::is_stream;
+
+/// Writes the report where `--json` and `--report` want it: the file first, because a stream cannot be taken back.
+pub fn emit(report: &RunReport, common: &CommonArgs, session: &Session) -> Result<(), Failure> {
+    if !common.json && common.report.is_none() {
+        return Ok(());
+    }
+    let mut text = serde_json::to_string_pretty(report)
+        .map_err(|e| Failure::internal(format!("the report cannot be written as JSON: {e}")))?;
+    text.push('\n');
+    if let Some(path) = &common.report {
+        super::side::write_side(path, text.as_bytes(), session)?;
+    }
+    if common.json {
+        super::streams::write_stream(text.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Refuses two things on standard output, and a report without a name.
+pub fn check_streams<'a>(common: &CommonArgs, made: impl IntoIterator<Item = &'a Path>) -> Result<(), Failure> {
+    if common.json && made.into_iter().any(is_stream) {
+        return Err(Failure::usage("--json and `-o -` both want standard output")
+            .hint("--report FILE.json writes the report to a file"));
+    }
+    match &common.report {
+        Some(report) if is_stream(report) => {
+            Err(Failure::usage("--report wants a file").hint("--json writes the report to standard output"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a report that is named as something else.
+pub fn check_name(common: &CommonArgs) -> Result<(), Failure> {
+    common.report.as_ref().map_or(Ok(()), |report| super::target::check_extension(report, "json"))
+}

@@ -1,0 +1,58 @@
+//! The arguments of `sdf`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::backend::BackendChoice;
+use super::choices::{MethodChoice, OrientChoice, SignChoice};
+use super::length::{BandChoice, parse_size};
+use super::shared_args::{CommonArgs, InputArgs, VoxelArgs};
+use crate::io::GridFormat;
+
+/// `sdf IN -o OUT`.
+#[derive(Debug, Args)]
+pub struct SdfArgs {
+    /// The mesh; all its shells together are one solid
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// Where to write the field: .vti, .nrrd, .npy or .vdb
+    #[arg(short, long, value_name = "OUT", required_unless_present = "plan")]
+    pub output: Option<PathBuf>,
+    /// The size of the voxels.
+    #[command(flatten)]
+    pub voxels: VoxelArgs,
+    /// How far from the surface distances are found, or `full` for everywhere; the lattice reaches as far
+    #[arg(long, value_name = "LEN|full", default_value = "4h")]
+    pub band: BandChoice,
+    /// How the distance is found
+    #[arg(long, value_enum, default_value_t = MethodChoice::Exact)]
+    pub method: MethodChoice,
+    /// Which processor draws the slices of --method prism
+    #[arg(long, value_enum, default_value_t = BackendChoice::Auto)]
+    pub backend: BackendChoice,
+    /// What tells inside from outside [default: pseudonormal for a valid solid, else votes]
+    #[arg(long, value_enum)]
+    pub sign: Option<SignChoice>,
+    /// Which side of the triangles is outside, unless the sign is by pseudonormals: find out, or trust the file
+    #[arg(long, value_enum, default_value_t = OrientChoice::Auto)]
+    pub orient: OrientChoice,
+    /// Format of the output, when its name should not decide
+    #[arg(long, value_name = "FORMAT")]
+    pub out_format: Option<GridFormat>,
+    /// Refuse to start when more memory would be needed (500M, 2G) [default: what is free]
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    pub max_memory: Option<u64>,
+    /// Say what the run would cost, and do nothing
+    #[arg(long)]
+    pub plan: bool,
+    /// Write over an input file
+    #[arg(long)]
+    pub force: bool,
+    /// How the input is read.
+    #[command(flatten)]
+    pub reading: InputArgs,
+    /// Flags of every verb.
+    #[command(flatten)]
+    pub common: CommonArgs,
+}
