@@ -31,7 +31,7 @@ fn meshes_keep_their_sharp_edges_and_colours_through_booleans() {
     let folder = folder();
     let line = "field a-sphere(2,x=5,y=5,z=10) a=testdata/inside_out_cube.stl --resolution 40 -o OUT/o.off";
     run_in(&folder, line).exits(0).says(&["a: repaired first"]);
-    let mesh = meshwright::io::read(&folder.path().join("o.off")).unwrap().mesh;
+    let mesh = meshwright::io::read(folder.path().join("o.off")).unwrap().mesh;
     for corner in 0..8 {
         let at = glam::DVec3::from([0, 1, 2].map(|axis| if corner >> axis & 1 == 1 { 10.0 } else { 0.0 }));
         assert!(mesh.positions.iter().any(|p| p.distance(at) < 1e-5), "corner {at}");
@@ -42,7 +42,7 @@ fn meshes_keep_their_sharp_edges_and_colours_through_booleans() {
         3 1 2 3 255 0 0\n3 2 0 3 255 0 0\n";
     std::fs::write(folder.path().join("red.ply"), red).unwrap();
     run_in(&folder, "field a&plane(z,0.5) a=OUT/red.ply --resolution 24 -o OUT/half.ply").exits(0);
-    let half = meshwright::io::read(&folder.path().join("half.ply")).unwrap();
+    let half = meshwright::io::read(folder.path().join("half.ply")).unwrap();
     let Some(Colours::Faces(colours)) = half.colours else { panic!("{:?}", half.colours) };
     let red = |t: usize| colours[t] == [255, 0, 0, 255];
     let on_top = |t: usize| half.mesh.corners(t).iter().all(|p| (p.z - 0.5).abs() < 1e-6);
@@ -60,7 +60,7 @@ fn lattices_come_and_go_in_every_format() {
         assert!((found / expected - 1.0).abs() < 0.02, "{format}: {found} instead of {expected}");
     }
     run_in(&folder, "field blob(sphere(1),0.5) --voxel 0.1 --band full -o OUT/full.npy").exits(0);
-    let full = read_grid(&folder.path().join("full.npy")).unwrap();
+    let full = read_grid(folder.path().join("full.npy")).unwrap();
     let middle = full.at(glam::IVec3::from(full.dims.map(|n| n as i32 / 2))).unwrap();
     assert!((middle + 0.5).abs() < 1e-6, "the blob is 1 inside: {middle}");
 }
@@ -72,7 +72,7 @@ fn a_sequence_has_a_file_for_each_frame_and_ends_where_its_parts_are() {
     run_in(&folder, line).exits(0).says(&["frame 2 of 3"]);
     assert_eq!(names_in(folder.path()), ["m_0.ply", "m_1.ply", "m_2.ply"]);
     let sizes = [0, 1, 2].map(|k| {
-        let mesh = meshwright::io::read(&folder.path().join(format!("m_{k}.ply"))).unwrap().mesh;
+        let mesh = meshwright::io::read(folder.path().join(format!("m_{k}.ply"))).unwrap().mesh;
         mesh.bounds().unwrap().size().x
     });
     assert!((sizes[0] - 2.0).abs() < 0.01 && (sizes[2] - 1.0).abs() < 1e-5, "{sizes:?}");
@@ -84,7 +84,7 @@ fn vertices_are_painted_by_a_second_expression() {
     let folder = folder();
     let line = "field box(4,1,1) --paint material(box(1,2,2,x=-3),box(1,2,2,x=3);0,1) --paint-range 0,1 --voxel 0.2 -o OUT/p.ply";
     run_in(&folder, line).exits(0).says(&["colours stand for values from 0 (violet) to 1 (yellow)"]);
-    let read = meshwright::io::read(&folder.path().join("p.ply")).unwrap();
+    let read = meshwright::io::read(folder.path().join("p.ply")).unwrap();
     let Some(Colours::Vertices(colours)) = read.colours else { panic!("{:?}", read.colours) };
     for (p, colour) in read.mesh.positions.iter().zip(colours).filter(|(p, _)| p.x.abs() > 1.0) {
         assert_eq!(p.x < 0.0, colour[1] < 128, "violet on the left, yellow on the right: {p} {colour:?}");

@@ -104,7 +104,7 @@ fn convert_keeps_every_triangle_in_every_format() {
 #[test]
 fn convert_keeps_colours_and_says_where_it_cannot() {
     let folder = folder();
-    let read = |name: &str| meshwright::io::read(&folder.path().join(name)).expect("it is sound");
+    let read = |name: &str| meshwright::io::read(folder.path().join(name)).expect("it is sound");
     let off =
         "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1 255 0 0\n3 0 1 3 0 0 255\n3 1 2 3 9 8 7\n3 2 0 3 1 2 3\n";
     std::fs::write(folder.path().join("in.off"), off).unwrap();

@@ -20,7 +20,7 @@ fn kept_rebuilt_and_made_up_are_told_apart() {
         let run = run_in(&folder, &format!("{line} --json"));
         let report = run.exits(0).json();
         let input = io::read(format!("testdata/{name}")).expect("our own").mesh;
-        let map = io::read(&folder.path().join("map.ply")).expect("a map");
+        let map = io::read(folder.path().join("map.ply")).expect("a map");
         let bytes = std::fs::read(folder.path().join("map.ply")).expect("a map");
         let text = String::from_utf8_lossy(&bytes).into_owned();
         assert!(text.contains("property int kind\nend_header"), "{text}");

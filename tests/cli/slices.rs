@@ -6,7 +6,7 @@ use tempfile::TempDir;
 use super::{folder, names_in, run_in};
 
 fn grid(folder: &TempDir, name: &str) -> GridFile {
-    read_grid(&folder.path().join(name)).unwrap_or_else(|e| panic!("{e}"))
+    read_grid(folder.path().join(name)).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Width, height and pixels of a picture.

@@ -115,21 +115,21 @@ fn gltf_is_in_metres_and_comes_back_as_it_was() {
         assert_eq!(report.says(&["times 0.001"]).json()["result"]["output"]["unit"], "m");
         run_in(&folder, &format!("repair OUT/in.3mf -o OUT/b.{format}")).exits(0).says(&["mm³", "times 0.001"]);
         for name in ["a", "b"] {
-            let loaded = read(&folder.path().join(format!("{name}.{format}"))).expect("it is sound");
+            let loaded = read(folder.path().join(format!("{name}.{format}"))).expect("it is sound");
             assert_eq!(loaded.unit, Some(Unit::Metre));
             let scaled = millimetres.positions.iter().map(|p| *p * 0.001);
             assert!(loaded.mesh.positions.iter().copied().eq(scaled), "{name}.{format}");
         }
     }
     run_in(&folder, "convert OUT/a.glb -o OUT/back.glb").exits(0);
-    let bounds = read(&folder.path().join("back.glb")).expect("it is sound").mesh.bounds().expect("a box");
+    let bounds = read(folder.path().join("back.glb")).expect("it is sound").mesh.bounds().expect("a box");
     assert!((bounds.size() - DVec3::new(0.0105, 0.01, 0.01025)).abs().max_element() < 1e-8);
     // Without a unit the numbers stay, and that is said.
     run_in(&folder, "convert testdata/open_cube.off -o OUT/c.glb")
         .exits(0)
         .says(&["glb is in metres", "1 reads as 1 m"]);
     run_in(&folder, "convert testdata/open_cube.off -o OUT/c.3mf").exits(0).says(&["read as millimetres"]);
-    assert_eq!(read(&folder.path().join("c.glb")).expect("it is sound").mesh.bounds().expect("a box").max.x, 10.0);
+    assert_eq!(read(folder.path().join("c.glb")).expect("it is sound").mesh.bounds().expect("a box").max.x, 10.0);
     run_in(&folder, "convert OUT/a.glb -o OUT/d.stl").exits(0).says(&["its numbers are metres"]);
 }
 
@@ -165,7 +165,7 @@ fn grids_are_inspected_and_converted() {
         from = to.to_string();
     }
     let values = |name: &str| {
-        let file = meshwright::io::read_grid(&folder.path().join(name)).expect("it is sound");
+        let file = meshwright::io::read_grid(folder.path().join(name)).expect("it is sound");
         let mut values = Vec::new();
         (0..file.dims[2]).for_each(|z| file.plane(z, &mut values));
         values

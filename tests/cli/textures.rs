@@ -45,7 +45,7 @@ fn what_is_kept_keeps_its_coordinates_and_what_is_new_gets_the_nearest() {
         let line = format!("repair OUT/in.{format} -o OUT/out.{format} --map OUT/map.ply --resolution 32");
         let said = run_in(&folder, &line).exits(0).stderr;
         assert!(!said.contains("texture"), "{format}: {said}");
-        let out = io::read(&at(&format!("out.{format}"))).expect("ours");
+        let out = io::read(at(&format!("out.{format}"))).expect("ours");
         assert_eq!(out.warnings, Vec::<String>::new(), "{format}");
         let found = out.texture.as_ref().expect("textures");
         let (mesh, texture) = &given;
@@ -73,7 +73,7 @@ fn what_is_kept_keeps_its_coordinates_and_what_is_new_gets_the_nearest() {
         }
         assert!(kept >= 6 && made > 0, "{format}: {kept} kept, {made} made");
         // The map has the same triangles, and says which are made.
-        let map = io::read(&at("map.ply")).expect("a map");
+        let map = io::read(at("map.ply")).expect("a map");
         assert_eq!(map.mesh.triangles.len(), out.mesh.triangles.len());
     }
 }
@@ -98,7 +98,7 @@ fn two_operands_keep_their_images_apart() {
         }
         let line = format!("union OUT/a.obj OUT/b.glb -o OUT/out.{format} --resolution 48");
         run_in(&folder, &line).exits(0);
-        let out = io::read(&folder.path().join(format!("out.{format}"))).expect("ours");
+        let out = io::read(folder.path().join(format!("out.{format}"))).expect("ours");
         assert_eq!(out.warnings, Vec::<String>::new(), "{format}");
         let found = out.texture.as_ref().expect("textures");
         let mut seen = [[0usize; 2]; 2];
@@ -169,7 +169,7 @@ fn simplification_stops_at_seams_and_materials() {
     write(&folder.path().join("in.obj"), &given);
     let count = |flags: &str| {
         run_in(&folder, &format!("repair OUT/in.obj -o OUT/out.obj --force {flags}")).exits(0);
-        let out = io::read(&folder.path().join("out.obj")).expect("ours");
+        let out = io::read(folder.path().join("out.obj")).expect("ours");
         let found = out.texture.as_ref().expect("textures");
         for t in 0..out.mesh.triangles.len() {
             let corners = out.mesh.corners(t);
@@ -218,7 +218,7 @@ fn every_verb_that_makes_a_mesh_keeps_textures() {
         let said = run_in(&folder, &format!("{line} --force")).exits(0).stderr;
         let name =
             line.split_whitespace().find(|word| word.contains("OUT/out")).expect("an output").replace("OUT/", "");
-        let out = io::read(&folder.path().join(&name)).expect("ours");
+        let out = io::read(folder.path().join(&name)).expect("ours");
         let found = out.texture.unwrap_or_else(|| panic!("{line}: {said}"));
         let count = out.mesh.triangles.len();
         let with = (0..count).filter(|t| found.at(*t, false).is_some() && image(&found, *t).is_some()).count();
@@ -247,7 +247,7 @@ fn what_cannot_be_kept_is_said() {
     run_in(&folder, "convert OUT/bmp.obj -o OUT/bmp.glb").exits(0).says(&["2 images of another kind left out"]);
     fs::remove_file(at("in.mtl")).expect("it was there");
     run_in(&folder, "repair OUT/in.obj -o OUT/out.obj").exits(0).says(&["in.mtl", "left out"]);
-    let out = io::read(&at("out.obj")).expect("ours").texture.expect("coordinates");
+    let out = io::read(at("out.obj")).expect("ours").texture.expect("coordinates");
     assert!(out.has_coordinates() && out.materials.len() == 2);
 }
 

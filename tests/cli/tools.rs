@@ -10,11 +10,11 @@ use tempfile::TempDir;
 use super::{assert_empty, folder, names_in, run_in, sample};
 
 fn mesh(folder: &TempDir, name: &str) -> TriMesh {
-    io::read(&folder.path().join(name)).expect("it reads").mesh
+    io::read(folder.path().join(name)).expect("it reads").mesh
 }
 
 fn given(name: &str) -> TriMesh {
-    io::read(&sample(name)).expect("it reads").mesh
+    io::read(sample(name)).expect("it reads").mesh
 }
 
 fn number(value: &Value) -> f64 {
@@ -107,7 +107,7 @@ fn decimate_keeps_the_colours_of_faces_and_their_borders() {
     }
     std::fs::write(folder.path().join("box.off"), text).expect("written");
     run_in(&folder, "decimate OUT/box.off -o OUT/few.off --triangles 60").exits(0);
-    let read = io::read(&folder.path().join("few.off")).expect("it reads");
+    let read = io::read(folder.path().join("few.off")).expect("it reads");
     let colours = read.colours.expect("colours");
     assert!(read.mesh.triangles.len() <= 60);
     for t in 0..read.mesh.triangles.len() {
@@ -164,7 +164,7 @@ fn split_keeps_the_colours_of_each_body() {
     std::fs::write(folder.path().join("two.off"), text).expect("written");
     run_in(&folder, "split OUT/two.off -o OUT/one.off").exits(0).says(&["2 bodies"]);
     for (name, colour) in [("one_001.off", [255, 0, 0, 255]), ("one_002.off", [0, 0, 255, 255])] {
-        let read = io::read(&folder.path().join(name)).expect("it reads");
+        let read = io::read(folder.path().join(name)).expect("it reads");
         let colours = read.colours.expect("colours");
         assert_eq!(read.mesh.triangles.len(), 4);
         assert!((0..4).all(|t| colours.corners(&read.mesh, t) == [colour; 3]), "{name}: {colours:?}");

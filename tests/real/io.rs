@@ -7,7 +7,7 @@ use crate::{Data, data};
 
 impl Data {
     fn load(&self, name: &str) -> Loaded {
-        let loaded = read(&self.path(name)).unwrap_or_else(|error| panic!("{error}"));
+        let loaded = read(self.path(name)).unwrap_or_else(|error| panic!("{error}"));
         assert_sound(&loaded);
         loaded
     }

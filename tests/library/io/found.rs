@@ -354,7 +354,7 @@ fn buffers_come_from_the_own_folder_and_no_more_than_is_declared() {
     let end = start + text[start..].find('"').unwrap();
     let with = |uri: &str| {
         std::fs::write(folder.join("a.gltf"), [&text[..start], uri, &text[end..]].concat()).unwrap();
-        read(&folder.join("a.gltf"))
+        read(folder.join("a.gltf"))
     };
     let glb = encoded(&tetrahedron(), &WriteOptions::new(Format::Glb));
     let buffer = &glb[glb.len() - 96..];

@@ -24,7 +24,8 @@ fn paths_are_of_any_kind_and_names_tell_the_format() {
         let loaded = read(as_text).unwrap();
         assert_eq!((loaded.format, loaded.warnings.len()), (format, 0));
         assert_eq!(corners(&loaded.mesh), corners(&tetrahedron()), "{format}");
-        assert_eq!(read(as_text.to_owned()).unwrap(), read(&path).unwrap());
+        let owned: String = as_text.to_owned();
+        assert_eq!(read(&owned).unwrap(), read(&path).unwrap());
         assert_eq!(read_as(&path, format).unwrap().format, format);
     }
     let path = folder.path().join("mesh.backup");

@@ -26,7 +26,7 @@ const SAMPLES: [(&str, usize, &[&str]); 16] = [
 ];
 
 fn load(name: &str) -> Loaded {
-    let loaded = read(&sample(name)).unwrap_or_else(|error| panic!("{error}"));
+    let loaded = read(sample(name)).unwrap_or_else(|error| panic!("{error}"));
     assert_sound(&loaded);
     loaded
 }

@@ -150,7 +150,7 @@ fn what_is_missing_is_told_and_the_rest_is_kept() {
                f 1/1 3/3 2/2\nf 1/1 2/2 4/3\nusemtl none\nf 2//1 3//2 4//1\nf 1/1 4/9 3/3\n";
     fs::write(at("a.obj"), obj).expect("written");
     let told = |words: &[&str]| {
-        let loaded = read(&at("a.obj")).expect("the mesh is sound");
+        let loaded = read(at("a.obj")).expect("the mesh is sound");
         for word in words {
             assert!(loaded.warnings.iter().any(|w| w.contains(word)), "`{word}` is not in {:?}", loaded.warnings);
         }
@@ -225,7 +225,7 @@ fn nothing_outside_of_the_folder_is_read() {
         );
         fs::write(folder.join("a.gltf"), json).expect("written");
         for file in ["a.obj", "a.ply", "a.gltf"] {
-            let loaded = read(&folder.join(file)).unwrap_or_else(|e| panic!("{e}"));
+            let loaded = read(folder.join(file)).unwrap_or_else(|e| panic!("{e}"));
             let texture = loaded.texture.as_ref().expect("coordinates");
             assert_eq!(texture.at(0, texture.downward), Some([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), "{file} {name}");
             assert!(texture.images[0].bytes.is_empty(), "{file} {name}");
@@ -237,7 +237,7 @@ fn nothing_outside_of_the_folder_is_read() {
         }
     }
     fs::write(folder.join("a.obj"), format!("mtllib ../secret.mtl\n{faces}")).expect("written");
-    let loaded = read(&folder.join("a.obj")).expect("the mesh is sound");
+    let loaded = read(folder.join("a.obj")).expect("the mesh is sound");
     assert_eq!(loaded.texture.expect("coordinates").materials[0].colour, None);
     assert!(loaded.warnings.iter().any(|w| w.contains("secret.mtl")), "{:?}", loaded.warnings);
 }

