@@ -4,7 +4,9 @@ use std::sync::{Arc, Mutex};
 
 use divan::Bencher;
 use glam::{DVec3, IVec3};
-use meshwright::contour::{Contour, ContourOptions, Crossing, Edge, Ground, Merge, collapse_same_voxel, contour};
+use meshwright::contour::{
+    Contour, ContourOptions, Crossing, Ground, LatticeEdge, Merge, collapse_same_voxel, contour,
+};
 use meshwright::lattice::{Bricks, DistanceField, Grid, Lattice, voxel_in_brick};
 use meshwright::mesh::Plane;
 use meshwright::progress::Progress;
@@ -37,7 +39,7 @@ struct Scene {
     lattice: Lattice,
     distance: DistanceField,
     /// Each crossing has its own plane.
-    crossings: FxHashMap<Edge, Crossing>,
+    crossings: FxHashMap<LatticeEdge, Crossing>,
     planes: Vec<Plane>,
 }
 
@@ -62,7 +64,7 @@ impl Scene {
         let distance = DistanceField::in_voxels(lattice, distance);
         let mut scene = Self { lattice, distance, crossings: FxHashMap::default(), planes: Vec::new() };
         let seen = Mutex::new(Vec::new());
-        let note = |edge: Edge| {
+        let note = |edge: LatticeEdge| {
             let (low, high) = (edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]);
             let (low, high) = (field(low.as_dvec3()), field(high.as_dvec3()));
             seen.lock().unwrap().push((edge, low / (low - high)));
@@ -77,7 +79,7 @@ impl Scene {
     }
 
     fn contour(&self) -> Contour {
-        let crossing = |edge: Edge| self.crossings.get(&edge).copied();
+        let crossing = |edge: LatticeEdge| self.crossings.get(&edge).copied();
         contour(&self.distance, &crossing, &ContourOptions::default(), &Progress::none()).unwrap()
     }
 }

@@ -3,7 +3,6 @@
 //! `cargo run --release --example filter -- MESH`
 
 use std::error::Error;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -24,7 +23,7 @@ const TIMED: usize = 1600;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).ok_or("the name of a mesh is wanted")?;
-    let mesh = io::read(Path::new(&path))?.mesh;
+    let mesh = io::read(&path)?.mesh;
     let bounds = mesh.bounds().ok_or("the mesh is empty")?;
     let cap = 0.05 * bounds.diagonal();
     let field: Shared = Arc::new(MeshField::new(&mesh, PointSign::Pseudonormal, 0));

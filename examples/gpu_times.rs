@@ -16,7 +16,7 @@ use rayon::prelude::*;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let path = arguments.next().ok_or("usage: gpu_times MESH RESOLUTION...")?;
-    let mesh = meshwright::io::read(std::path::Path::new(&path))?.mesh;
+    let mesh = meshwright::io::read(&path)?.mesh;
     let bounds = mesh.bounds().ok_or("no triangles")?;
     let start = Instant::now();
     let device = Device::open(&Wanted::Any)?;

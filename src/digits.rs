@@ -61,6 +61,7 @@ fn significant(x: f64, round: fn(f64) -> f64) -> String {
 }
 
 /// Six significant digits, without zeros at the end, as something one can type: `0.0393701`, `25.4`.
+#[cfg(feature = "cli")]
 pub(crate) fn factor(x: f64) -> String {
     format!("{x:.5e}").parse::<f64>().map_or_else(|_| x.to_string(), |rounded| rounded.to_string())
 }

@@ -66,6 +66,7 @@ pub mod compare;
 pub mod picture;
 pub mod pipeline;
 mod front;
+#[cfg(feature = "cli")]
 pub mod cli;
 
 pub use glam;

@@ -1,6 +1,6 @@
-// Makes the .vdb files of tests/io/openvdb with OpenVDB itself, so that the reader is tested against its own author.
+// Makes the .vdb files of tests/library/io/openvdb with OpenVDB itself, so that the reader is tested against its own author.
 //
-//   g++ -O1 -std=c++17 tools/make_vdb.cpp -o make_vdb -lopenvdb -ltbb -lImath-3_1 && ./make_vdb tests/io/openvdb
+//   g++ -O1 -std=c++17 tools/make_vdb.cpp -o make_vdb -lopenvdb -ltbb -lImath-3_1 && ./make_vdb tests/library/io/openvdb
 //
 // Needs libopenvdb-dev (made with 10.0.1). The ball has radius 1.25, its middle at (2.3, 2.2, 2.1), voxels of 0.25 and a band of two voxels.
 #include <openvdb/openvdb.h>

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use super::exit::{Exit, Failure};
 use super::streams::{self, is_stream, label, plain_reason};
-use crate::io::draft::{clear_leftovers, folder_of};
+use crate::io::draft::folder_of;
+use crate::io::leftovers::clear_leftovers;
 
 /// A file that a run makes.
 pub struct Made {

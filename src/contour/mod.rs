@@ -45,7 +45,7 @@ pub struct Crossing {
 
 /// The lattice edge from `voxel` to the next voxel along `axis`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Edge {
+pub struct LatticeEdge {
     /// The voxel at its lower end.
     pub voxel: IVec3,
     /// The axis along which it runs: 0, 1 or 2 for x, y or z.
@@ -142,7 +142,7 @@ pub struct Collapsed {
 /// The order of vertices and triangles is that of bricks, voxels and axes. Bærentzen §5.
 pub fn contour(
     distance: &DistanceField,
-    crossing: &(impl Fn(Edge) -> Option<Crossing> + Sync),
+    crossing: &(impl Fn(LatticeEdge) -> Option<Crossing> + Sync),
     options: &ContourOptions,
     progress: &Progress,
 ) -> Result<Contour, Stopped> {

@@ -4,7 +4,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::signs::{Brick, Crossed, Neighbour, Signs};
-use super::{ContourOptions, ContourVertex, Crossing, Edge, Ground};
+use super::{ContourOptions, ContourVertex, Crossing, Ground, LatticeEdge};
 use crate::lattice::{BRICK, Grid, Lattice, Slot};
 use crate::progress::{Progress, Stopped};
 
@@ -51,7 +51,7 @@ fn interpolated(low: f64, high: f64) -> f64 {
 }
 
 /// `p` rounded to `f32`, strictly between the rounded ends of its edge if any `f32` is.
-fn rounded(lattice: &Lattice, edge: Edge, place: f64) -> DVec3 {
+fn rounded(lattice: &Lattice, edge: LatticeEdge, place: f64) -> DVec3 {
     let axis = edge.axis as usize;
     let mut p = edge.voxel.as_dvec3();
     let coordinate = |n: f64| (lattice.origin[axis] + n * lattice.h) as f32;
@@ -68,7 +68,7 @@ fn rounded(lattice: &Lattice, edge: Edge, place: f64) -> DVec3 {
 pub(super) fn vertices(
     lattice: &Lattice,
     distance: &Grid<f32>,
-    crossing: &(impl Fn(Edge) -> Option<Crossing> + Sync),
+    crossing: &(impl Fn(LatticeEdge) -> Option<Crossing> + Sync),
     options: &ContourOptions,
     (signs, crossed): (&Signs, &[Crossed]),
     progress: &Progress,
@@ -76,7 +76,7 @@ pub(super) fn vertices(
     let margin = options.margin.clamp(0.0, 0.5);
     let vertex = |brick: &Brick, k: usize, z: usize, axis: usize| {
         let (x, y) = (k & 7, k >> 3);
-        let edge = Edge { voxel: brick.at * BRICK + IVec3::new(x as i32, y as i32, z as i32), axis: axis as u8 };
+        let edge = LatticeEdge { voxel: brick.at * BRICK + IVec3::new(x as i32, y as i32, z as i32), axis: axis as u8 };
         let inside_low = (signs.planes(brick.around[0])[z] >> k) & 1 == 1;
         let hit = crossing(edge);
         let place = hit.map(|c| c.t).filter(|t| t.is_finite()).unwrap_or_else(|| {

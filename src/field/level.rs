@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::fill::touches_border;
 use super::passages::Passages;
 use super::{Field, FillError, FillOptions, Sample, SourceTriangle, fill};
-use crate::contour::{Contour, ContourOptions, Crossing, Edge, Ground, contour};
+use crate::contour::{Contour, ContourOptions, Crossing, Ground, LatticeEdge, contour};
 use crate::lattice::Lattice;
 use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
@@ -60,7 +60,7 @@ pub fn level(
     let cut_off = touches_border(&values);
     let passages = Passages::of(field, &values, progress)?;
     progress.share(0.8);
-    let crossing = |edge: Edge| Some(Crossing { t: passages.at(edge)?, triangle: None });
+    let crossing = |edge: LatticeEdge| Some(Crossing { t: passages.at(edge)?, triangle: None });
     let mut contour = contour(&values, &crossing, &ContourOptions::default(), progress)?;
     drop(values);
     progress.share(0.9);

@@ -4,7 +4,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::Field;
-use crate::contour::Edge;
+use crate::contour::LatticeEdge;
 use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, DistanceField, Slot, brick_of, index_in_brick, voxel_in_brick};
 use crate::progress::{Progress, Stopped};
 
@@ -85,7 +85,7 @@ impl<'a> Passages<'a> {
     }
 
     /// Where on `edge` the field is zero: 0 at its lower voxel, 1 at its upper one.
-    pub(super) fn at(&self, edge: Edge) -> Option<f64> {
+    pub(super) fn at(&self, edge: LatticeEdge) -> Option<f64> {
         if let Slot::Active(n) = self.bricks.slot(brick_of(edge.voxel)) {
             let list = &self.of_bricks[n as usize];
             return list.binary_search_by_key(&number(&edge), |(number, _)| *number).ok().map(|at| list[at].1);
@@ -97,12 +97,12 @@ impl<'a> Passages<'a> {
     }
 }
 
-fn number(edge: &Edge) -> u16 {
+fn number(edge: &LatticeEdge) -> u16 {
     3 * index_in_brick(edge.voxel) as u16 + u16::from(edge.axis)
 }
 
 /// The edges with a passage that begin in a brick, in order, and those that end in it and begin in one that is not stored.
-fn edges(values: &DistanceField, brick: IVec3) -> Vec<Edge> {
+fn edges(values: &DistanceField, brick: IVec3) -> Vec<LatticeEdge> {
     let DistanceField { lattice, grid, .. } = values;
     let mut edges = Vec::new();
     let inside = |voxel: IVec3| {
@@ -115,19 +115,19 @@ fn edges(values: &DistanceField, brick: IVec3) -> Vec<Edge> {
         for axis in 0..3u8 {
             let step = IVec3::AXES[axis as usize];
             if own != inside(voxel + step) {
-                edges.push(Edge { voxel, axis });
+                edges.push(LatticeEdge { voxel, axis });
             }
             let before = voxel - step;
             let first = brick_of(before) != brick && !matches!(grid.bricks.slot(brick_of(before)), Slot::Active(_));
             if first && own != inside(before) {
-                edges.push(Edge { voxel: before, axis });
+                edges.push(LatticeEdge { voxel: before, axis });
             }
         }
     }
     edges
 }
 
-fn search(values: &DistanceField, edge: &Edge) -> Search {
+fn search(values: &DistanceField, edge: &LatticeEdge) -> Search {
     let ends = [edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]];
     let [low, high] = ends.map(|voxel| values.length(values.grid.get(voxel)));
     let ends = ends.map(|voxel| values.lattice.to_model(voxel.as_dvec3()));

@@ -5,9 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::adapters::{AdapterEntry, Wanted, wanted};
-use super::peel::Peel;
-use super::scatter::Scatter;
-use super::setup::Setup;
+use super::programs::{Peel, Scatter, Setup};
 use super::{GpuError, GpuMethod};
 
 /// An open graphics adapter with the programs of this crate. Opening takes tens of milliseconds, hundreds on some

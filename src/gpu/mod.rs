@@ -10,6 +10,7 @@ mod device;
 mod error;
 mod peel;
 mod prism;
+mod programs;
 mod run;
 mod scan;
 mod scatter;

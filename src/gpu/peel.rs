@@ -1,5 +1,6 @@
 //! Layered depth images by depth peeling (Bærentzen §3): one pass over the triangles for each layer.
 
+use super::programs::{Peel, SLOTS};
 use super::run::{Run, Source};
 use super::scene::{self, Beam, Chunk, Tile};
 use super::{GpuError, GpuLimits, shaders};
@@ -9,21 +10,8 @@ use crate::ldi::Crossed;
 const BATCH: usize = 4;
 /// The most rays along a side of a tile: six textures of a word each.
 const TILE_SIDE: u32 = 2048;
-const SLOTS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-
-/// The program.
-#[derive(Debug)]
-pub(super) struct Peel {
-    pipeline: wgpu::RenderPipeline,
-}
 
 impl Peel {
-    pub fn new(device: &wgpu::Device) -> Self {
-        let target = wgpu::ColorTargetState { format: SLOTS, blend: None, write_mask: wgpu::ColorWrites::ALL };
-        let constants = shaders::PEEL_CONSTANTS;
-        Self { pipeline: shaders::render(device, shaders::PEEL, "peel", constants, target, Some(shaders::nearest())) }
-    }
-
     /// The crossings of all rays of a window.
     pub fn crossed(
         &self,

@@ -1,17 +1,10 @@
 //! Sums of all before, in place.
 
+use super::programs::Scan;
 use super::run::Run;
-use super::shaders;
 
 /// Values that a workgroup sums: as in the shader.
 const BLOCK: u64 = 1024;
-
-/// The two passes.
-#[derive(Debug)]
-pub(super) struct Scan {
-    sum_blocks: wgpu::ComputePipeline,
-    raise_blocks: wgpu::ComputePipeline,
-}
 
 /// One level: values, sums of their blocks, and how many there are.
 struct Level {
@@ -22,11 +15,6 @@ struct Level {
 }
 
 impl Scan {
-    pub fn new(device: &wgpu::Device) -> Self {
-        let pipeline = |entry| shaders::compute(device, shaders::SCAN, entry, &[]);
-        Self { sum_blocks: pipeline("sum_blocks"), raise_blocks: pipeline("raise_blocks") }
-    }
-
     /// Replaces each of the first `count` values (at most 2²⁶) by the sum of those before it; the result's first word will
     /// be the sum of all.
     pub fn encode(

@@ -1,31 +1,15 @@
 //! Layered depth images by counting, a scan, and scattering: every triangle is drawn twice, whatever the depth.
 
+use super::programs::{Scatter, TARGET};
 use super::run::{Run, Source};
-use super::scan::Scan;
 use super::scene::{Beam, Chunk, Tile};
-use super::{GpuError, GpuLimits, shaders};
+use super::{GpuError, GpuLimits};
 use crate::ldi::Crossed;
 
 /// The most rays along a side of a tile.
 const TILE_SIDE: u32 = 4096;
-/// Nothing is drawn to it: passes must have a target.
-const TARGET: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
-
-/// The programs.
-#[derive(Debug)]
-pub(super) struct Scatter {
-    count: wgpu::RenderPipeline,
-    scatter: wgpu::RenderPipeline,
-    pub(super) scan: Scan,
-}
 
 impl Scatter {
-    pub fn new(device: &wgpu::Device) -> Self {
-        let target = wgpu::ColorTargetState { format: TARGET, blend: None, write_mask: wgpu::ColorWrites::empty() };
-        let pipeline = |entry| shaders::render(device, shaders::SCATTER, entry, &[], target.clone(), None);
-        Self { count: pipeline("count"), scatter: pipeline("scatter"), scan: Scan::new(device) }
-    }
-
     /// The crossings of all rays of a window.
     pub fn crossed(
         &self,

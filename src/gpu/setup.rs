@@ -1,25 +1,15 @@
 //! Finding the triangles that may cross the rays of a tile.
 
+use super::programs::Setup;
 use super::run::Run;
 use super::scene::Chunk;
-use super::shaders;
 
 /// Triangles of a workgroup, as in the shader.
 const WIDTH: u32 = 64;
 /// The most workgroups along a side.
 const SIDE: u32 = 32768;
 
-/// The program.
-#[derive(Debug)]
-pub(super) struct Setup {
-    pipeline: wgpu::ComputePipeline,
-}
-
 impl Setup {
-    pub fn new(device: &wgpu::Device) -> Self {
-        Self { pipeline: shaders::compute(device, shaders::SETUP, "set_up", shaders::SETUP_CONSTANTS) }
-    }
-
     /// Fills the chunks' candidates for one tile. `views`: the tile, for each chunk.
     pub fn encode(
         &self,

@@ -66,7 +66,7 @@ impl fmt::Display for Format {
     }
 }
 
-/// A name that is no format.
+/// A word that names no format of meshes.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no mesh format known here; use stl, obj, ply, off, glb, gltf or 3mf")]
 pub struct UnknownFormat(pub String);

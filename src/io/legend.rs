@@ -13,7 +13,7 @@ const LONGEST_TEXT: usize = 60;
 pub struct LegendEntry {
     /// Red, green and blue.
     pub colour: [u8; 3],
-    /// What it means.
+    /// What the colour means.
     pub text: String,
 }
 

@@ -16,7 +16,7 @@ use crate::mesh::{TriMesh, ValidateOptions};
 pub struct Part {
     /// The name in the file; empty where it has none.
     pub name: String,
-    /// Its triangles in the mesh.
+    /// The numbers of its triangles in the mesh.
     pub triangles: Range<usize>,
 }
 

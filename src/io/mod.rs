@@ -36,6 +36,8 @@ mod foreign;
 mod format;
 mod gltf;
 mod grids;
+#[cfg(feature = "cli")]
+pub(crate) mod leftovers;
 mod legend;
 mod loaded;
 mod obj;

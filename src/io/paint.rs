@@ -12,7 +12,7 @@ use crate::mesh::TriMesh;
 pub struct Paint<'a> {
     /// Colours of triangles, vertices or corners.
     pub colours: Option<&'a Colours>,
-    /// Textures.
+    /// Textures: coordinates, materials, images.
     pub texture: Option<&'a TextureMap>,
     /// Where the file will lie, which names the files beside it ([`TextureMap::side_files`]); `None` for a stream, which has
     /// none. [`write_painted`](crate::io::write_painted) fills it in.

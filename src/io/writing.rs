@@ -16,7 +16,7 @@ use crate::mesh::TriMesh;
 /// How to write a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WriteOptions {
-    /// The format.
+    /// The format of the file.
     pub format: Format,
     /// Whether STL and PLY are written as text. The other formats have one form each.
     pub ascii: bool,

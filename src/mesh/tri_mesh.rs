@@ -48,8 +48,8 @@ impl Bounds {
 /// given a mesh that fails the check, they may panic.
 ///
 /// A coordinate that is NaN or infinite is no error here. Readers leave out the faces at such vertices, with a warning;
-/// [`validate`](crate::mesh::validate) counts the triangles there as degenerate; the pipelines leave these out, as they do with all triangles
-/// without an area; the writers refuse the mesh and name the vertex.
+/// [`validate`](crate::mesh::validate) finds that the mesh has no volume and so bounds no solid; the pipelines leave the triangles there out, as they do
+/// with all triangles without an area; the writers refuse the mesh and name the vertex.
 ///
 /// ```
 /// use glam::DVec3;

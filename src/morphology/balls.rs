@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::offset::MARGIN;
-use super::{Body, OffsetError, Remain, around};
+use super::{Gauge, OffsetError, Remain, around};
 use crate::lattice::{BRICK_VOXELS, DistanceField, Slot};
 use crate::mesh::edges::Union;
 use crate::mesh::{Plane, TriMesh};
@@ -75,7 +75,7 @@ pub fn places(remains: &[Remain], side: f64) -> usize {
 
 /// A closing or opening by balls whose centres are known: its surface is where they reach.
 pub struct Balls<'a> {
-    pub(super) centres: Body<'a>,
+    pub(super) centres: Gauge<'a>,
     /// Model units; positive outside, for a closing.
     pub(super) radius: f64,
 }
@@ -83,7 +83,7 @@ pub struct Balls<'a> {
 impl<'a> Balls<'a> {
     /// Balls of `radius` (model units; negative: inside, for an opening) around `centres`.
     pub fn new(centres: &'a Centres, radius: f64) -> Self {
-        Self { centres: Body::sheet(&centres.mesh), radius }
+        Self { centres: Gauge::sheet(&centres.mesh), radius }
     }
 
     /// The signed distance to the surface that the balls leave, negative inside of it, and its gradient, at a point that is

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::offset::MARGIN;
 use super::remains::Search;
-use super::{Balls, Body, Offset, OffsetError, Region};
-use crate::contour::{ContourOptions, Crossing, Edge, Ground, contour};
+use super::{Balls, Gauge, Offset, OffsetError, Region};
+use crate::contour::{ContourOptions, Crossing, Ground, LatticeEdge, contour};
 use crate::lattice::{BRICK, DistanceField, Grid, Lattice, voxel_in_brick};
 use crate::mesh::Plane;
 use crate::progress::{Progress, Stopped};
@@ -43,7 +43,7 @@ const MOST_SAMPLES: usize = 64;
 /// # Errors
 /// Those of [`exact`], and a stop.
 pub fn closed(
-    original: &Body<'_>,
+    original: &Gauge<'_>,
     balls: &Balls<'_>,
     lattice: &Lattice,
     region: Option<&Region<'_>>,
@@ -56,7 +56,7 @@ pub fn closed(
     let holds = |voxel: IVec3| region.is_none_or(|region| region.holds(voxel));
     let changed = restore(&mut field.grid, &own.grid, within, &holds);
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
-    let crossing = |edge: Edge| {
+    let crossing = |edge: LatticeEdge| {
         let voxels = [edge.voxel, edge.voxel + IVec3::AXES[edge.axis as usize]];
         let ends = voxels.map(model);
         let at = |t: f64| ends[0].lerp(ends[1], t);
@@ -92,7 +92,7 @@ pub struct Closed {
 
 /// The distance to the solid, counted in voxels, as far as balls around it reach.
 pub(super) fn own_distance(
-    original: &Body<'_>,
+    original: &Gauge<'_>,
     radius: f64,
     lattice: &Lattice,
     progress: &Progress,
@@ -131,7 +131,7 @@ pub struct Reached {
 /// touches from outside without meeting the solid elsewhere; from inside for a negative radius (Bærentzen §5.2: the
 /// offset point has to be at that distance). Points that are not beside the `region` count as touched.
 pub fn reached(
-    body: &Body<'_>,
+    body: &Gauge<'_>,
     radius: f64,
     lattice: &Lattice,
     region: Option<&Region<'_>>,

@@ -8,18 +8,18 @@
 //! [`canals`] lists what a closing would fill, and lets it fill only some of that.
 
 mod balls;
-mod body;
 mod canals;
 mod closed;
+mod gauge;
 mod offset;
 mod region;
 mod remains;
 mod thin;
 
 pub use balls::{Balls, Centres, places};
-pub use body::Body;
 pub use canals::{Canal, CanalKind, Canals, canals};
 pub use closed::{Closed, Reached, closed, reached};
+pub use gauge::Gauge;
 pub use offset::{Offset, offset};
 pub use region::Region;
 pub use remains::Remain;

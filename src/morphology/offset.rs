@@ -6,8 +6,8 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 use super::remains::{Remain, Search};
-use super::{Body, OffsetError};
-use crate::contour::{Contour, ContourOptions, Crossing, Edge, Ground, contour};
+use super::{Gauge, OffsetError};
+use crate::contour::{Contour, ContourOptions, Crossing, Ground, LatticeEdge, contour};
 use crate::lattice::{BRICK, Bricks, DistanceField, Lattice, voxel_in_brick};
 use crate::mesh::Plane;
 use crate::progress::Progress;
@@ -35,10 +35,10 @@ pub struct Offset {
 ///
 /// # Errors
 /// Those of [`exact`], and a stop.
-pub fn offset(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) -> Result<Offset, OffsetError> {
+pub fn offset(body: &Gauge<'_>, level: f64, lattice: &Lattice, progress: &Progress) -> Result<Offset, OffsetError> {
     let field = field(body, level, lattice, progress)?;
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
-    let crossing = |edge: Edge| {
+    let crossing = |edge: LatticeEdge| {
         let (from, to) = (model(edge.voxel), model(edge.voxel + IVec3::AXES[edge.axis as usize]));
         let value = |voxel: IVec3| field.length(field.grid.get(voxel)) + level;
         let values = [value(edge.voxel), value(edge.voxel + IVec3::AXES[edge.axis as usize])];
@@ -54,13 +54,13 @@ pub fn offset(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progres
 }
 
 /// The plane through the level's point nearest to `p`, by one step along the gradient.
-pub(super) fn tangent(body: &Body<'_>, level: f64, p: DVec3, h: f64) -> Plane {
+pub(super) fn tangent(body: &Gauge<'_>, level: f64, p: DVec3, h: f64) -> Plane {
     let (value, normal) = body.at(p, level.abs() + h);
     Plane { normal, offset: normal.dot(p) - (value - level) }
 }
 
 /// The distance less the level over the lattice, counted in voxels.
-fn field(body: &Body<'_>, level: f64, lattice: &Lattice, progress: &Progress) -> Result<DistanceField, OffsetError> {
+fn field(body: &Gauge<'_>, level: f64, lattice: &Lattice, progress: &Progress) -> Result<DistanceField, OffsetError> {
     let level_h = level / lattice.h;
     let reach = level_h.abs() * body.mitre.unwrap_or(1.0);
     let options = ExactOptions { band: Band::Within(reach + MARGIN), max_memory: None };

@@ -9,7 +9,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
-use super::{Body, corners};
+use super::{Gauge, corners};
 use crate::lattice::{BRICK, Grid, Lattice, voxel_in_brick};
 use crate::progress::{Progress, Stopped};
 
@@ -57,7 +57,7 @@ pub struct Remain {
 /// A level whose thin parts are looked for.
 pub(super) struct Search<'a> {
     /// What the distance is to.
-    pub body: &'a Body<'a>,
+    pub body: &'a Gauge<'a>,
     /// The level, model units.
     pub level: f64,
     /// 1: of what is above the level, −1: of what is below it.

@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use super::Body;
+use super::Gauge;
 use crate::mesh::edges::Union;
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::{Progress, Stopped};
@@ -38,7 +38,7 @@ const TORN: f64 = 2.0;
 /// surface, no larger than `h`, the centres of the largest balls that touch its corners from inside, where they touch the
 /// surface on the other side, too; where only one that touches its centre does, a very small triangle there. All in model
 /// units; empty where no wall is as thin. The second number is the area of the surface with these behind it.
-pub fn middles(body: &Body<'_>, least: f64, h: f64, progress: &Progress) -> Result<(TriMesh, f64), Stopped> {
+pub fn middles(body: &Gauge<'_>, least: f64, h: f64, progress: &Progress) -> Result<(TriMesh, f64), Stopped> {
     let walls = Walls { body, radius: least / 2.0, h };
     let of = |t: usize| {
         if t.is_multiple_of(1024) {
@@ -81,7 +81,7 @@ enum Behind {
 }
 
 struct Walls<'a> {
-    body: &'a Body<'a>,
+    body: &'a Gauge<'a>,
     radius: f64,
     h: f64,
 }

@@ -6,7 +6,7 @@ mod patches;
 mod sides;
 
 pub use clean::{Cleaned, clean};
-pub use patches::{Patches, orient_patches};
+pub use patches::{PatchId, Patches, orient_patches};
 pub use sides::orient_sides;
 
 use serde::Serialize;

@@ -6,11 +6,28 @@ use crate::mesh::neighbours::{Across, Neighbours};
 /// A triangle that no patch has reached yet.
 const UNSEEN: u32 = u32::MAX;
 
+/// The number of a patch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PatchId(u32);
+
+impl PatchId {
+    /// The place of the patch among all patches.
+    #[inline]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// The number that the patch has when `count` others come before it.
+    pub fn after(self, count: usize) -> Self {
+        Self(self.0 + count as u32)
+    }
+}
+
 /// The patches of a soup: triangles that are connected through edges which exactly two of them share.
 #[derive(Debug, Clone, Default)]
 pub struct Patches {
     /// The patch of each triangle; patches are numbered by their first triangle.
-    pub of: Vec<u32>,
+    pub of: Vec<PatchId>,
     /// Number of patches.
     pub count: usize,
     /// Triangles that were turned over.
@@ -25,24 +42,25 @@ pub struct Patches {
 pub fn orient_patches(triangles: &mut [[u32; 3]], unoriented: &[bool], mode: OrientMode) -> Patches {
     let vertices = triangles.iter().flatten().max().map_or(0, |&v| v as usize + 1);
     let neighbours = Neighbours::new(triangles, vertices);
-    let mut patches = Patches { of: vec![UNSEEN; triangles.len()], ..Patches::default() };
+    let mut patches = Patches::default();
+    let mut of = vec![UNSEEN; triangles.len()];
     let mut flip = vec![false; triangles.len()];
     let mut members = Vec::new();
     for seed in 0..triangles.len() {
-        if patches.of[seed] != UNSEEN {
+        if of[seed] != UNSEEN {
             continue;
         }
         members.clear();
         members.push(seed as u32);
-        patches.of[seed] = patches.count as u32;
+        of[seed] = patches.count as u32;
         let mut next = 0;
         while next < members.len() {
             let t = members[next] as usize;
             next += 1;
             for Across { triangle, turned } in beside(triangles, &neighbours, t) {
                 let other = triangle as usize;
-                if patches.of[other] == UNSEEN {
-                    patches.of[other] = patches.count as u32;
+                if of[other] == UNSEEN {
+                    of[other] = patches.count as u32;
                     flip[other] = flip[t] != turned;
                     members.push(triangle);
                 }
@@ -55,6 +73,7 @@ pub fn orient_patches(triangles: &mut [[u32; 3]], unoriented: &[bool], mode: Ori
         }
         patches.count += 1;
     }
+    patches.of = of.into_iter().map(PatchId).collect();
     if mode == OrientMode::Keep {
         return patches;
     }
@@ -91,7 +110,7 @@ mod tests {
     #[test]
     fn triangles_that_share_only_a_vertex_are_two_patches() {
         let mut triangles = vec![[0, 1, 2], [2, 3, 4]];
-        assert_eq!(orient_patches(&mut triangles, &[false; 2], OrientMode::Auto).of, [0, 1]);
+        assert_eq!(orient_patches(&mut triangles, &[false; 2], OrientMode::Auto).of, [0, 1].map(PatchId));
     }
 
     #[test]
@@ -101,7 +120,7 @@ mod tests {
         triangles.extend([[0, 1, 4], [0, 5, 1], [1, 5, 4], [0, 4, 5]]);
         let before = triangles.clone();
         let patches = orient_patches(&mut triangles, &[false; 8], OrientMode::Auto);
-        assert_eq!(patches.of, [0, 0, 0, 0, 1, 1, 1, 1]);
+        assert_eq!(patches.of, [0, 0, 0, 0, 1, 1, 1, 1].map(PatchId));
         assert_eq!((patches.count, patches.flipped), (2, 0));
         assert_eq!(triangles, before);
     }

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::PatchId;
 use crate::ldi::{Hit, Layers, Operands, balanced_alone};
 use crate::progress::{Progress, Stopped};
 
@@ -25,7 +26,7 @@ struct Ballot {
 /// votes for what that says of it. An odd number of crossings has no say.
 pub fn orient_sides(
     layers: &mut [Layers],
-    patch_of: &[u32],
+    patch_of: &[PatchId],
     patch_count: usize,
     operands: &Operands,
     progress: &Progress,
@@ -43,7 +44,7 @@ pub fn orient_sides(
         turned.iter_mut().zip(&flip).for_each(|(turned, &flip)| *turned ^= flip);
         layers.par_iter_mut().for_each(|layers| {
             for hit in &mut layers.hits {
-                if flip[patch_of[hit.triangle() as usize] as usize] {
+                if flip[patch_of[hit.triangle() as usize].index()] {
                     *hit = hit.turned();
                 }
             }
@@ -60,7 +61,7 @@ fn add(mut a: Vec<Ballot>, b: Vec<Ballot>) -> Vec<Ballot> {
     a
 }
 
-fn poll(layers: &Layers, patch_of: &[u32], patch_count: usize, operands: &Operands) -> Vec<Ballot> {
+fn poll(layers: &Layers, patch_of: &[PatchId], patch_count: usize, operands: &Operands) -> Vec<Ballot> {
     let mut ballots = vec![Ballot::default(); patch_count];
     let mut own = Vec::new();
     for hits in layers.offsets.windows(2).map(|w| &layers.hits[w[0] as usize..w[1] as usize]) {
@@ -81,13 +82,13 @@ fn poll(layers: &Layers, patch_of: &[u32], patch_count: usize, operands: &Operan
 }
 
 /// Adds the votes of one operand's crossings on one ray.
-fn vote(hits: &[Hit], patch_of: &[u32], ballots: &mut [Ballot]) {
+fn vote(hits: &[Hit], patch_of: &[PatchId], ballots: &mut [Ballot]) {
     if hits.len() % 2 == 1 {
         return;
     }
     let balanced = balanced_alone(hits);
     for (n, hit) in hits.iter().enumerate() {
-        let ballot = &mut ballots[patch_of[hit.triangle() as usize] as usize];
+        let ballot = &mut ballots[patch_of[hit.triangle() as usize].index()];
         if balanced || hit.entering() == (n % 2 == 0) {
             ballot.keep += 1;
         } else {

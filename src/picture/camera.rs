@@ -7,35 +7,35 @@ use crate::mesh::{Bounds, TriMesh};
 /// The share of the image's sides that stays free on each side.
 const MARGIN: f64 = 0.04;
 
-/// A direction of parallel view.
+/// The direction of a view in parallel projection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// From the mesh to the viewer; any length but 0.
+    /// The direction from the mesh to the viewer, of any length but 0.
     pub from: DVec3,
-    /// What is up in the image; any direction that is not parallel to `from`.
+    /// The direction that is up in the image; any but one parallel to `from`.
     pub up: DVec3,
 }
 
 impl View {
-    /// From the front, the right and above: x runs to the right and nearer, y to the right and away, z up.
+    /// The view from the front, the right and above: x runs to the right and nearer, y to the right and away, z up.
     pub const ISO: Self = Self { from: DVec3::new(1.0, -1.3, 0.85), up: DVec3::Z };
-    /// Against −y: x to the right, z up.
+    /// The view from −y: x to the right, z up.
     pub const FRONT: Self = Self { from: DVec3::NEG_Y, up: DVec3::Z };
-    /// Against +y.
+    /// The view from +y: x to the left, z up.
     pub const BACK: Self = Self { from: DVec3::Y, up: DVec3::Z };
-    /// Against −x.
+    /// The view from −x: y to the left, z up.
     pub const LEFT: Self = Self { from: DVec3::NEG_X, up: DVec3::Z };
-    /// Against +x.
+    /// The view from +x: y to the right, z up.
     pub const RIGHT: Self = Self { from: DVec3::X, up: DVec3::Z };
-    /// From +z: x to the right, y up.
+    /// The view from +z: x to the right, y up.
     pub const TOP: Self = Self { from: DVec3::Z, up: DVec3::Y };
-    /// From −z.
+    /// The view from −z: x to the right, y down.
     pub const BOTTOM: Self = Self { from: DVec3::NEG_Z, up: DVec3::NEG_Y };
 
     /// The names that [`View::named`] knows.
     pub const NAMES: [&str; 7] = ["iso", "front", "back", "left", "right", "top", "bottom"];
 
-    /// The view of this name.
+    /// The view of a name, if it is one of [`View::NAMES`].
     pub fn named(name: &str) -> Option<Self> {
         let views = [Self::ISO, Self::FRONT, Self::BACK, Self::LEFT, Self::RIGHT, Self::TOP, Self::BOTTOM];
         Self::NAMES.iter().position(|&n| n == name).map(|k| views[k])

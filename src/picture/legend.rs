@@ -13,7 +13,8 @@ const PIXELS_PER_DOT: u32 = 360;
 /// At most this part of the width and height of the picture is for the legend.
 const MOST: f64 = 0.75;
 
-/// Draws a legend on white, as large as suits the picture, in the corner where it hides least; the lower left one if that is all the same. Nothing, where there is no room for letters of one pixel a dot.
+/// Draws a legend on white, as large as suits the picture, in the corner where it hides least, or in the lower left one if all corners hide
+/// the same. Nothing is drawn where there is no room for letters of one pixel a dot.
 pub fn draw_legend(image: &mut Image, entries: &[LegendEntry]) {
     let longest = entries.iter().map(|entry| digits::size(&entry.text, 1)[0]).max().unwrap_or(0);
     let [across, down] = [3 * GAP + PATCH + longest, GAP + (PATCH + GAP) * entries.len() as u32];

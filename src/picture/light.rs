@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::rgb::Rgb;
 use super::scene::Scene;
-use super::sight::{Hit, weights};
+use super::sight::{Visible, weights};
 
 /// Front sides.
 const FRONT: Vec3 = Vec3::new(0.52, 0.60, 0.70);
@@ -21,7 +21,7 @@ const FILL: (Vec3, f32) = (Vec3::new(0.80, 0.10, 0.45), 0.22);
 const AMBIENT: [f32; 2] = [0.34, 0.16];
 
 /// The colour of a visible point at (x, y). `darkness` is the share of the sky that is hidden from it.
-pub(super) fn shade(scene: &Scene, hit: Hit, [x, y]: [f32; 2], darkness: f32) -> Rgb {
+pub(super) fn shade(scene: &Scene, hit: Visible, [x, y]: [f32; 2], darkness: f32) -> Rgb {
     let t = hit.triangle as usize;
     let (n, facing) = normal_at(scene, t, x, y);
     let base = match (scene.marked[t], facing) {

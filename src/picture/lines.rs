@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::Vec2;
 
 use super::line::Line;
-use super::rgb::Sample;
+use super::rgb::PixelSample;
 use super::scene::Scene;
 use super::sight::Sight;
 
@@ -26,14 +26,14 @@ impl LinesByBand {
     }
 
     /// Draws the lines of band number `band`, the pixel rows `rows`, over its samples.
-    pub(super) fn draw(&self, band: usize, scene: &Scene, seen: &Sight, rows: Range<usize>, out: &mut [Sample]) {
+    pub(super) fn draw(&self, band: usize, scene: &Scene, seen: &Sight, rows: Range<usize>, out: &mut [PixelSample]) {
         for &id in &self.0[band] {
             draw_line(&scene.lines[id as usize], scene, seen, &rows, out);
         }
     }
 }
 
-fn draw_line(line: &Line, scene: &Scene, seen: &Sight, rows: &Range<usize>, out: &mut [Sample]) {
+fn draw_line(line: &Line, scene: &Scene, seen: &Sight, rows: &Range<usize>, out: &mut [PixelSample]) {
     let (colour, opacity, width) = line.style.pen();
     let samples = seen.samples as f32;
     // Lines fade out over a sample's width.

@@ -17,7 +17,7 @@ pub(super) const BAND: usize = 16;
 /// Which edges are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum EdgeDrawing {
-    /// None.
+    /// No edges.
     None,
     /// Edges whose triangles are more than 30 degrees apart, and those without exactly two triangles.
     #[default]
@@ -32,11 +32,11 @@ pub enum Background {
     /// White, opaque.
     #[default]
     White,
-    /// Nothing: alpha 0.
+    /// Nothing: pixels with alpha 0.
     Transparent,
 }
 
-/// Options of [`render`] and [`render_pair`].
+/// Options of [`render`](super::render) and [`render_pair`](super::render_pair).
 #[derive(Debug, Clone, PartialEq)]
 pub struct RenderOptions {
     /// Pixels across, 1 to 16,384.
@@ -76,13 +76,13 @@ impl Default for RenderOptions {
 /// Why there is no picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum RenderError {
-    /// Interrupted, or the deadline passed.
+    /// The work was interrupted, or its deadline passed.
     #[error(transparent)]
     Stopped(#[from] Stopped),
-    /// Nothing to see.
+    /// There are no triangles to draw.
     #[error("there are no triangles to draw")]
     Empty,
-    /// Sides of 0 or over 16,384 pixels, or supersampling out of 1 to 8.
+    /// The picture would have a side of 0 or over 16,384 pixels, too many samples in all, or supersampling out of 1 to 8.
     #[error(
         "a picture of {width} x {height} pixels with {supersampling} x {supersampling} samples each cannot be made: sides go from 1 to 16384, samples from 1 to 8"
     )]
@@ -101,7 +101,7 @@ pub enum RenderError {
 pub struct Painted<'a> {
     /// The mesh.
     pub mesh: &'a TriMesh,
-    /// Its colours; alpha does not count. `None`: grey.
+    /// The colours of its front sides, of which alpha does not count; `None` for grey.
     pub colours: Option<&'a Colours>,
 }
 

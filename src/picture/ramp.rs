@@ -4,8 +4,8 @@
 const RAMP: [[f64; 3]; 5] =
     [[52.0, 28.0, 96.0], [45.0, 84.0, 140.0], [38.0, 135.0, 134.0], [96.0, 186.0, 96.0], [246.0, 228.0, 94.0]];
 
-/// The colour of a value from 0 to 1 of something that has a least and a greatest value; others have the colour of the end
-/// that is nearer, and what is no number is grey.
+/// The colour of a measured value, scaled so that the least one is 0 and the greatest 1. A value below 0 or above 1 has the colour of
+/// that end, and NaN is grey.
 pub fn ramp_colour(value: f64) -> [u8; 3] {
     if value.is_nan() {
         return [128; 3];

@@ -10,7 +10,7 @@ use super::light::shade;
 use super::lines::LinesByBand;
 use super::occlusion::occlusion;
 use super::options::{BAND, Background, Painted, RenderError, RenderOptions, check_size};
-use super::rgb::{Rgb, Sample};
+use super::rgb::{PixelSample, Rgb};
 use super::scene::Scene;
 use super::sight::{Sight, sight};
 use crate::mesh::TriMesh;
@@ -18,6 +18,9 @@ use crate::progress::Progress;
 
 /// Draws a mesh, as large as the image allows. Front sides (counter-clockwise) have their colours, or are grey; back sides,
 /// which an intact solid never shows, are rust red.
+///
+/// # Errors
+/// [`RenderError::Empty`] for a mesh without triangles, [`RenderError::Size`] for sizes out of range, and [`RenderError::Stopped`].
 pub fn render<'a>(
     mesh: impl Into<Painted<'a>>,
     options: &RenderOptions,
@@ -30,6 +33,9 @@ pub fn render<'a>(
 
 /// Draws two meshes with the same camera, so that the images can be laid over each other. A mesh without
 /// triangles gives an empty image.
+///
+/// # Errors
+/// As [`render`], but [`RenderError::Empty`] only when neither mesh has triangles.
 pub fn render_pair<'a>(
     before: impl Into<Painted<'a>>,
     after: impl Into<Painted<'a>>,
@@ -76,23 +82,23 @@ fn draw(
 }
 
 /// The colour of each sample of some pixel rows; alpha 0 where nothing is seen.
-fn shade_band(scene: &Scene, seen: &Sight, darkness: &[f32], rows: Range<usize>) -> Vec<Sample> {
+fn shade_band(scene: &Scene, seen: &Sight, darkness: &[f32], rows: Range<usize>) -> Vec<PixelSample> {
     let (columns, per_pixel) = (seen.columns(), seen.samples);
     let sample_rows = rows.start * per_pixel..rows.end * per_pixel;
     let cells = sample_rows.flat_map(|row| (0..columns).map(move |column| (row, column)));
     cells
         .map(|(row, column)| match seen.hit(row, column) {
-            None => Sample { colour: Rgb::BLACK, alpha: 0.0 },
+            None => PixelSample { colour: Rgb::BLACK, alpha: 0.0 },
             Some(hit) => {
                 let pixel = (row / per_pixel) * (columns / per_pixel) + column / per_pixel;
-                Sample { colour: shade(scene, hit, seen.position(row, column), darkness[pixel]), alpha: 1.0 }
+                PixelSample { colour: shade(scene, hit, seen.position(row, column), darkness[pixel]), alpha: 1.0 }
             }
         })
         .collect()
 }
 
 /// The bytes of some pixel rows from their samples.
-fn average(colours: &[Sample], samples: usize, width: usize, background: Background, out: &mut [u8]) {
+fn average(colours: &[PixelSample], samples: usize, width: usize, background: Background, out: &mut [u8]) {
     let columns = width * samples;
     let share = 1.0 / (samples * samples) as f32;
     for (pixel, bytes) in out.chunks_exact_mut(4).enumerate() {

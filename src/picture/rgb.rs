@@ -47,12 +47,12 @@ impl Mul<f32> for Rgb {
 
 /// A colour in linear light, not multiplied by its alpha.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sample {
+pub(super) struct PixelSample {
     pub(super) colour: Rgb,
     pub(super) alpha: f32,
 }
 
-impl Sample {
+impl PixelSample {
     /// Lays `colour` over it.
     pub(super) fn cover(&mut self, colour: Rgb, alpha: f32) {
         let total = alpha + self.alpha * (1.0 - alpha);

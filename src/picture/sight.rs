@@ -11,14 +11,14 @@ const NONE: u32 = u32::MAX;
 
 /// A visible point: triangle and its depth, pixels towards the viewer.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Hit {
+pub(super) struct Visible {
     pub(super) triangle: u32,
     pub(super) z: f32,
 }
 
 /// The hits of all samples, row by row.
 pub(super) struct Sight {
-    hits: Vec<Hit>,
+    hits: Vec<Visible>,
     /// Pixels across and down.
     pub(super) size: [usize; 2],
     /// Samples along each side of a pixel.
@@ -32,7 +32,7 @@ impl Sight {
     }
 
     /// What sample `column` of sample row `row` sees.
-    pub(super) fn hit(&self, row: usize, column: usize) -> Option<Hit> {
+    pub(super) fn hit(&self, row: usize, column: usize) -> Option<Visible> {
         Some(self.hits[row * self.columns() + column]).filter(|hit| hit.triangle != NONE)
     }
 
@@ -50,10 +50,10 @@ fn centre(samples: usize, row: usize, column: usize) -> [f32; 2] {
 /// buffer is several times faster than rays, above all where long thin triangles crowd.
 pub(super) fn sight(scene: &Scene, size: [usize; 2], samples: usize, progress: &Progress) -> Result<Sight, Stopped> {
     let columns = size[0] * samples;
-    let mut hits = vec![Hit { triangle: NONE, z: f32::NEG_INFINITY }; columns * size[1] * samples];
+    let mut hits = vec![Visible { triangle: NONE, z: f32::NEG_INFINITY }; columns * size[1] * samples];
     let bands = by_band(scene, samples, size[1] * samples);
     hits.par_chunks_mut(columns * BAND).zip(&bands).enumerate().try_for_each(|(band, (out, triangles))| {
-        let mut rows: Vec<&mut [Hit]> = out.chunks_exact_mut(columns).collect();
+        let mut rows: Vec<&mut [Visible]> = out.chunks_exact_mut(columns).collect();
         for &triangle in triangles {
             progress.check()?;
             let corners = &scene.corners[triangle as usize];
@@ -89,7 +89,7 @@ fn row_range(corners: &[Vec3; 3], samples: usize) -> Option<(usize, usize)> {
 }
 
 /// Puts a triangle into one row of samples, where it is the nearest so far.
-fn fill(out: &mut [Hit], triangle: u32, corners: &[Vec3; 3], samples: usize, row: usize) {
+fn fill(out: &mut [Visible], triangle: u32, corners: &[Vec3; 3], samples: usize, row: usize) {
     let [_, y] = centre(samples, row, 0);
     let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
     for k in 0..3 {
@@ -110,7 +110,7 @@ fn fill(out: &mut [Hit], triangle: u32, corners: &[Vec3; 3], samples: usize, row
     for (column, hit) in (from..).zip(&mut out[from..to.max(from)]) {
         let [x, y] = centre(samples, row, column);
         if let Some(z) = depth(corners, x, y).filter(|&z| z > hit.z) {
-            *hit = Hit { triangle, z };
+            *hit = Visible { triangle, z };
         }
     }
 }

@@ -8,11 +8,11 @@ use super::colour_map::colour;
 use super::digits;
 use super::image::Image;
 use super::options::{BAND, RenderError, check_size};
-use super::rgb::{Rgb, Sample};
+use super::rgb::{PixelSample, Rgb};
 use crate::mesh::Bounds;
 use crate::progress::Progress;
 
-/// An axis that a plane is across.
+/// The axis that a plane is perpendicular to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
     /// The picture shows y to the right and z up.
@@ -24,7 +24,7 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// 0, 1 or 2.
+    /// The number of the axis: 0, 1 or 2 for x, y or z.
     pub fn number(self) -> usize {
         self as usize
     }
@@ -35,12 +35,12 @@ impl Axis {
     }
 }
 
-/// A rectangle in a plane across an axis.
+/// A rectangle in a plane perpendicular to an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlicePlane {
-    /// The axis that it is across.
+    /// The axis that the plane is perpendicular to.
     pub axis: Axis,
-    /// Where on this axis, model units.
+    /// Where on this axis the plane lies, model units.
     pub at: f64,
     /// The corner on the left and below, model units.
     pub min: DVec2,
@@ -86,12 +86,13 @@ pub struct SliceSamples {
 pub struct SliceColours {
     /// The distance from zero, model units, that has full colour: blue below zero, orange above.
     pub full: f64,
-    /// From one line of equal value to the next, model units.
+    /// The step from one line of equal value to the next, model units.
     pub step: f64,
 }
 
 impl SliceColours {
-    /// Full colour for the value farthest from zero, and four to eight lines on either side at round values.
+    /// Colours for values up to `farthest` from zero: that value has full colour, and four to eight lines on either side of zero lie at
+    /// round values.
     pub fn up_to(farthest: f64) -> Self {
         let full = if farthest > 0.0 && farthest.is_finite() { farthest } else { 1.0 };
         let least = full / 8.0 * (1.0 - 1e-9);
@@ -105,7 +106,7 @@ impl SliceColours {
 /// pixels stay white. The plane is grown along one side to the shape of the picture.
 ///
 /// # Errors
-/// For sizes as in [`super::RenderOptions`], and when stopped.
+/// [`RenderError::Size`] for sizes out of the range of [`RenderOptions`](super::RenderOptions), and [`RenderError::Stopped`].
 pub fn sample_slice(
     field: impl Fn(DVec3) -> f64 + Sync,
     plane: &SlicePlane,
@@ -152,7 +153,7 @@ impl SliceSamples {
         finite.map(|value| [value, value]).reduce(|[a, b], [low, high]| [a.min(low), b.max(high)])
     }
 
-    /// How far from zero values go, model units.
+    /// The largest distance of a value from zero, model units.
     pub fn farthest(&self) -> f64 {
         self.range().map_or(0.0, |[low, high]| low.abs().max(high.abs()))
     }
@@ -185,7 +186,7 @@ impl SliceSamples {
         let slope = self.slope(column as isize, row as isize, value);
         // Where the field is flat there are no lines, even at a value that has one.
         let pixels = |level: f32| if slope > 1e-5 * step { (value - level).abs() / slope } else { f32::INFINITY };
-        let mut sample = Sample { colour: colour(value / full), alpha: 1.0 };
+        let mut sample = PixelSample { colour: colour(value / full), alpha: 1.0 };
         let level = (value / step).round();
         if level != 0.0 {
             sample.cover(LINE, 0.5 * cover(pixels(level * step), 0.45 * self.layout.pen));

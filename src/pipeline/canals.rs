@@ -9,7 +9,7 @@ use super::plan::Offsets;
 use super::stages::Stages;
 use super::{Changed, MorphologyError, Plan, Report, StageTime, SurfaceOptions};
 use crate::mesh::{Solid, TriMesh};
-use crate::morphology::{self, Balls, Body, Canal, OffsetError};
+use crate::morphology::{self, Balls, Canal, Gauge, OffsetError};
 use crate::progress::{Progress, Stage, Stopped};
 
 /// Options of [`canals`].
@@ -90,7 +90,7 @@ pub fn canals(solid: &Solid, options: &CanalOptions, progress: &Progress) -> Res
     let mut stages = Stages::new(progress);
     let job = Job { solid: &local, h, surface: &options.surface, progress };
 
-    let body = Body::new(&local, None);
+    let body = Gauge::new(&local, None);
     let centres = job.there(&body, radius, &mut stages)?;
     let balls = Balls::new(&centres, radius);
     stages.begin(Stage::Canals)?;

@@ -261,7 +261,7 @@ pub fn distance(
         return Err(LimitError::Memory { needed, allowed, voxel_that_fits: None }.into());
     }
     let mut stages = Stages::new(progress);
-    let run = Run { lattice, band, options, progress };
+    let run = Making { lattice, band, options, progress };
     let mut report = DistanceReport::default();
     let field = match (options.method, options.sign) {
         (DistanceMethod::Exact, DistanceSign::Pseudonormal) => {
@@ -385,14 +385,14 @@ impl From<SoupError> for DistanceError {
 }
 
 /// What the ways to a field share.
-struct Run<'a> {
+struct Making<'a> {
     lattice: Lattice,
     band: Band,
     options: &'a DistanceOptions,
     progress: &'a Progress,
 }
 
-impl Run<'_> {
+impl Making<'_> {
     fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<DistanceField, DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
         Ok(exact::exact(mesh, &self.lattice, sign, &options, self.progress)?)

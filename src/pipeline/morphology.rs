@@ -9,7 +9,7 @@ use super::stages::Stages;
 use super::{Changed, LatticeError, LimitError, Plan, Report, SurfaceOptions, sizing};
 use crate::digits;
 use crate::mesh::{IndexError, NotSolid, Solid, SolidError, TriMesh};
-use crate::morphology::{Body, OffsetError, Operation, places};
+use crate::morphology::{Gauge, OffsetError, Operation, places};
 use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::ExactError;
 
@@ -175,7 +175,7 @@ pub(super) fn with_voxels(
     let made = match options.operation {
         Operation::Dilate | Operation::Erode => {
             let level = if options.operation == Operation::Dilate { radius } else { -radius };
-            let (body, reach) = (Body::new(&local, options.sharp), options.sharp.unwrap_or(1.0));
+            let (body, reach) = (Gauge::new(&local, options.sharp), options.sharp.unwrap_or(1.0));
             job.refined(offsets, finer, |job| job.one_way(&body, level, reach, &mut stages))?
         }
         Operation::Close => job.refined(offsets, finer, |job| job.there_and_back(radius, &mut stages))?,

@@ -11,7 +11,7 @@ use crate::fit::{Facets, FitOptions, FitReport, Sides, Surface, TargetDistance, 
 use crate::lattice::Lattice;
 use crate::ldi::Evidence;
 use crate::mesh::{Bounds, Solid, TriMesh, ValidateOptions, validate};
-use crate::morphology::{Balls, Body, Centres, Offset, Region, Remain, closed, offset, reached};
+use crate::morphology::{Balls, Centres, Gauge, Offset, Region, Remain, closed, offset, reached};
 use crate::progress::{Progress, Stage};
 use crate::sdf::exact::{ExactDistance, PointSign};
 
@@ -125,7 +125,7 @@ impl Job<'_> {
     /// One offset. `reach`: how many times its level the farthest corners are away from the solid.
     pub(super) fn one_way(
         &self,
-        body: &Body<'_>,
+        body: &Gauge<'_>,
         level: f64,
         reach: f64,
         stages: &mut Stages<'_>,
@@ -145,7 +145,7 @@ impl Job<'_> {
     }
 
     pub(super) fn there_and_back(&self, radius: f64, stages: &mut Stages<'_>) -> Result<Made, MorphologyError> {
-        let body = Body::new(self.solid, None);
+        let body = Gauge::new(self.solid, None);
         let centres = self.there(&body, radius, stages)?;
         self.back(&body, &Balls::new(&centres, radius), radius, None, stages)
     }
@@ -153,7 +153,7 @@ impl Job<'_> {
     /// The first step of a closing or opening: where centres of balls can be.
     pub(super) fn there(
         &self,
-        body: &Body<'_>,
+        body: &Gauge<'_>,
         radius: f64,
         stages: &mut Stages<'_>,
     ) -> Result<Centres, MorphologyError> {
@@ -180,7 +180,7 @@ impl Job<'_> {
     /// The second step, by the balls of the first; within a region, or everywhere.
     pub(super) fn back(
         &self,
-        body: &Body<'_>,
+        body: &Gauge<'_>,
         balls: &Balls<'_>,
         radius: f64,
         region: Option<&Region<'_>>,

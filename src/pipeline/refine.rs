@@ -4,7 +4,7 @@ use glam::IVec3;
 use rayon::prelude::*;
 
 use super::{Precision, SurfaceOptions, TriangleSource};
-use crate::contour::{Collapsed, Contour, ContourVertex, Crossing, Edge, Ground, Merge, collapse_same_voxel};
+use crate::contour::{Collapsed, Contour, ContourVertex, Crossing, Ground, LatticeEdge, Merge, collapse_same_voxel};
 use crate::fit::{Facets, Side, Sides, Surface};
 use crate::lattice::{DistanceField, Lattice};
 use crate::ldi::{Expression, edge_crossing};
@@ -28,7 +28,7 @@ pub(super) fn crossings<'a>(
     survey: &'a Survey,
     winding: &'a Winding<'_>,
     distance: &'a DistanceField,
-) -> impl Fn(Edge) -> Option<Crossing> + Sync + 'a {
+) -> impl Fn(LatticeEdge) -> Option<Crossing> + Sync + 'a {
     move |edge| {
         let lower_inside = distance.grid.get(edge.voxel) < 0.0;
         if let Some((t, hit)) = edge_crossing(&survey.spans, edge.voxel, edge.axis as usize, lower_inside) {

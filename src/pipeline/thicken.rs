@@ -13,7 +13,7 @@ use super::{BooleanError, Changed, MorphologyError, Plan, Report, SurfaceOptions
 use crate::digits;
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, IndexError, Pseudonormals, Solid, TriMesh};
-use crate::morphology::{Body, OffsetError, middles};
+use crate::morphology::{Gauge, OffsetError, middles};
 use crate::progress::{Progress, Stage, Stopped};
 
 /// Walls are at least this many voxels thick: of less the lattice makes no round edge.
@@ -138,7 +138,7 @@ pub fn thicken(
     let fixed = options.surface.with_voxel(h);
     let mut stages = Stages::new(progress);
     stages.begin(Stage::ThinWalls)?;
-    let body = local.as_ref().map(|solid| Body::new(solid, None));
+    let body = local.as_ref().map(|solid| Gauge::new(solid, None));
     let (mut thin, thin_area) = match &body {
         Some(body) => middles(body, min, h, progress)?,
         None => (TriMesh::default(), 0.0),
@@ -154,7 +154,7 @@ pub fn thicken(
         }
         solid => {
             let job = Job { solid: &thin, h, surface: &fixed, progress };
-            let mut grown = job.one_way(&Body::sheet(&thin), min / 2.0, 1.0, &mut stages)?.surface.mesh;
+            let mut grown = job.one_way(&Gauge::sheet(&thin), min / 2.0, 1.0, &mut stages)?.surface.mesh;
             frame.mesh(&mut grown);
             united(solid, &grown, &fixed, progress)?
         }
@@ -228,7 +228,7 @@ impl From<OffsetError> for ThickenError {
 }
 
 /// Triangles that are no part of the solid's surface and lie outside of it; all where there is no solid.
-fn sheets(input: &TriMesh, solid: Option<&Body<'_>>, h: f64, progress: &Progress) -> Result<TriMesh, Stopped> {
+fn sheets(input: &TriMesh, solid: Option<&Gauge<'_>>, h: f64, progress: &Progress) -> Result<TriMesh, Stopped> {
     progress.check()?;
     let apart = |t: &usize| {
         let corners = input.corners(*t);

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::lattice::Lattice;
 use crate::ldi::{Layers, Operands};
 use crate::mesh::{Plane, TriMesh};
-use crate::orient::{OrientMode, OrientReport, clean, orient_patches, orient_sides};
+use crate::orient::{OrientMode, OrientReport, PatchId, clean, orient_patches, orient_sides};
 use crate::progress::{Progress, Stopped};
 
 /// The operands, cleaned, made consistent within each patch, and put one after another. Model units.
@@ -16,7 +16,7 @@ pub struct Soup {
     /// Which triangles belong to which operand.
     pub operands: Operands,
     /// The patch of each triangle; patches are numbered through all operands.
-    pub patch_of: Vec<u32>,
+    pub patch_of: Vec<PatchId>,
     /// The number of patches.
     pub patch_count: usize,
     /// What cleaning and orientation did, for each operand.
@@ -65,7 +65,7 @@ impl Soup {
             counts.push(cleaned.mesh.triangles.len());
             soup.mesh.append(&cleaned.mesh);
             soup.source.append(&mut cleaned.source);
-            soup.patch_of.extend(patches.of.drain(..).map(|patch| patch + soup.patch_count as u32));
+            soup.patch_of.extend(patches.of.drain(..).map(|patch| patch.after(soup.patch_count)));
             soup.patch_count += patches.count;
             soup.reports.push(OrientReport {
                 degenerate_dropped: cleaned.degenerate,
@@ -93,7 +93,7 @@ impl Soup {
         let turned = orient_sides(layers, &self.patch_of, self.patch_count, &self.operands, progress)?;
         let mut seen = vec![false; turned.len()];
         for (n, triangle) in self.mesh.triangles.iter_mut().enumerate() {
-            let patch = self.patch_of[n] as usize;
+            let patch = self.patch_of[n].index();
             if turned[patch] {
                 triangle.swap(1, 2);
                 let report = &mut self.reports[self.operands.of(n as u32)];

@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use crate::contour_support::{Case, enclosed, fault, noise};
 use glam::{DVec3, IVec3};
 use meshwright::contour::{
-    Collapsed, Contour, ContourOptions, Crossing, Edge, Ground, Merge, collapse_same_voxel, contour,
+    Collapsed, Contour, ContourOptions, Crossing, Ground, LatticeEdge, Merge, collapse_same_voxel, contour,
 };
 use meshwright::lattice::Slot;
 use meshwright::mesh::{Plane, TriMesh};
@@ -122,8 +122,8 @@ fn the_collapse_brings_the_edges_of_a_box_back() {
     let inside = |v: IVec3| v.cmpge(IVec3::splat(5)).all() && v.cmplt(IVec3::new(20, 16, 33)).all();
     let case = Case::new(IVec3::splat(40), 3, inside);
     // one triangle for each side: low x, low y, low z, high x, high y, high z
-    let side = |edge: Edge| u32::from(edge.axis) + 3 * u32::from(inside(edge.voxel));
-    let crossing = |edge: Edge| Some(Crossing { t: 0.3, triangle: Some(side(edge)) });
+    let side = |edge: LatticeEdge| u32::from(edge.axis) + 3 * u32::from(inside(edge.voxel));
+    let crossing = |edge: LatticeEdge| Some(Crossing { t: 0.3, triangle: Some(side(edge)) });
     let places = [4.3, 4.3, 4.3, 19.3, 15.3, 32.3];
     let planes = |ground: Ground| {
         let Ground::Triangle(side) = ground else { return None };

@@ -68,7 +68,7 @@ pub(super) fn positions(
         }
         p
     };
-    vectors(document, buffers, accessor, Shape { size: 3 * kind.size(), zero: [0.0; 3], decode }, allowance)
+    vectors(document, buffers, accessor, ValueForm { size: 3 * kind.size(), zero: [0.0; 3], decode }, allowance)
 }
 
 /// The colours behind an accessor: linear light from 0 to 1, then alpha.
@@ -98,7 +98,7 @@ pub(super) fn colours(
     };
     let mut zero = [0.0; 4];
     zero[channels..].fill(1.0);
-    vectors(document, buffers, accessor, Shape { size: channels * kind.size(), zero, decode }, allowance)
+    vectors(document, buffers, accessor, ValueForm { size: channels * kind.size(), zero, decode }, allowance)
 }
 
 /// The texture coordinates behind an accessor.
@@ -121,7 +121,7 @@ pub(super) fn coordinates(
         }
         place
     };
-    vectors(document, buffers, accessor, Shape { size: 2 * kind.size(), zero: [0.0; 2], decode }, allowance)
+    vectors(document, buffers, accessor, ValueForm { size: 2 * kind.size(), zero: [0.0; 2], decode }, allowance)
 }
 
 /// The translations, rotations or scales of instances behind an accessor, each of `width` numbers.
@@ -147,11 +147,11 @@ pub(super) fn instance_values(
         }
         value
     };
-    vectors(document, buffers, accessor, Shape { size: width * kind.size(), zero: [0.0; 4], decode }, allowance)
+    vectors(document, buffers, accessor, ValueForm { size: width * kind.size(), zero: [0.0; 4], decode }, allowance)
 }
 
 /// What the values of an accessor look like.
-struct Shape<T, F> {
+struct ValueForm<T, F> {
     /// Bytes of a value.
     size: usize,
     /// The value where there are no bytes.
@@ -165,11 +165,11 @@ fn vectors<T: Copy>(
     document: &Document,
     buffers: &Buffers<'_>,
     accessor: &Accessor<'_>,
-    shape: Shape<T, impl Fn(&[u8]) -> T>,
+    shape: ValueForm<T, impl Fn(&[u8]) -> T>,
     allowance: &mut Expansion,
 ) -> Result<Vec<T>, FileError> {
     let fail = |problem| FileError::item(item(accessor), problem);
-    let Shape { size, zero, decode } = shape;
+    let ValueForm { size, zero, decode } = shape;
     let count = accessor.count() as u64;
     allowance.spend(count).map_err(fail)?;
     let mut values: Vec<T> = match checked::view_of(document, accessor) {

@@ -9,7 +9,7 @@ use gltf::accessor::{DataType, Dimensions};
 use gltf::json;
 use gltf::json::validation::Checked::{Invalid, Valid};
 use gltf::mesh::Mode;
-use gltf::{Accessor, Document, Image, Material, Mesh, Node, Primitive, Scene, Semantic, Texture, buffer};
+use gltf::{Accessor, Document, Image, Material, Mesh, Node, Scene, Semantic, Texture, buffer};
 
 use super::super::error::{FileError, FileProblem};
 
@@ -141,7 +141,7 @@ pub(super) fn image(document: &Document, texture: usize) -> Option<Image<'_>> {
 }
 
 /// Where the bytes of an image are.
-pub(super) enum Source<'a> {
+pub(super) enum ImageSource<'a> {
     /// In this file, or in the address itself.
     Uri(&'a str),
     /// In the view of this number, which may lead nowhere.
@@ -149,26 +149,26 @@ pub(super) enum Source<'a> {
 }
 
 /// Where the bytes of an image are; `None` where the document does not say.
-pub(super) fn source<'a>(document: &'a Document, image: &Image<'_>) -> Option<Source<'a>> {
+pub(super) fn source<'a>(document: &'a Document, image: &Image<'_>) -> Option<ImageSource<'a>> {
     let json = document.as_json().images.get(image.index())?;
-    let view = json.buffer_view.map(|view| Source::View(view.value()));
-    json.uri.as_deref().map(Source::Uri).or(view)
+    let view = json.buffer_view.map(|view| ImageSource::View(view.value()));
+    json.uri.as_deref().map(ImageSource::Uri).or(view)
 }
 
 /// A primitive, and what it names.
-pub(super) struct Part<'a> {
+pub(super) struct Primitive<'a> {
     document: &'a Document,
-    primitive: Primitive<'a>,
+    primitive: gltf::Primitive<'a>,
     json: &'a json::mesh::Primitive,
 }
 
 /// The primitives of a mesh.
-pub(super) fn parts<'a>(document: &'a Document, mesh: &Mesh<'a>) -> impl Iterator<Item = Part<'a>> + use<'a> {
+pub(super) fn primitives<'a>(document: &'a Document, mesh: &Mesh<'a>) -> impl Iterator<Item = Primitive<'a>> + use<'a> {
     let json = document.as_json().meshes.get(mesh.index()).map_or(&[][..], |mesh| &mesh.primitives);
-    mesh.primitives().zip(json).map(move |(primitive, json)| Part { document, primitive, json })
+    mesh.primitives().zip(json).map(move |(primitive, json)| Primitive { document, primitive, json })
 }
 
-impl<'a> Part<'a> {
+impl<'a> Primitive<'a> {
     /// What the vertices make; `None` where that is no word of the specification.
     pub(super) fn mode(&self) -> Option<Mode> {
         matches!(self.json.mode, Valid(_)).then(|| self.primitive.mode())

@@ -1,4 +1,4 @@
-//! The node tree: transforms are applied, every node with a mesh becomes a part.
+//! The node tree: transforms are applied, every node with a mesh becomes a primitive.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -14,7 +14,7 @@ use super::super::soup::{Expansion, Soup, too_many_vertices};
 use super::super::text::counted;
 use super::accessor;
 use super::buffers::Buffers;
-use super::checked::{self, Part};
+use super::checked::{self, Primitive};
 use super::instancing::Instancing;
 use super::material::Tint;
 use super::texture::Looks;
@@ -123,13 +123,13 @@ impl<'a> Reader<'a, '_> {
         self.soup.begin_part(name.as_bytes());
         // Primitives of a mesh often share one accessor: its vertices are taken once.
         let mut shared = Shared::default();
-        for part in checked::parts(self.document, &mesh) {
-            let Some(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) = part.mode() else {
-                self.passed_over(&part);
+        for primitive in checked::primitives(self.document, &mesh) {
+            let Some(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) = primitive.mode() else {
+                self.passed_over(&primitive);
                 continue;
             };
-            self.posed += usize::from(part.has_morph_targets());
-            self.primitive(&part, mode, place, &mut shared).map_err(|e| match e.location {
+            self.posed += usize::from(primitive.has_morph_targets());
+            self.primitive(&primitive, mode, place, &mut shared).map_err(|e| match e.location {
                 Some(_) => e,
                 None => fail(*e.problem),
             })?;
@@ -138,9 +138,10 @@ impl<'a> Reader<'a, '_> {
     }
 
     /// Counts a primitive of points or lines.
-    fn passed_over(&mut self, part: &Part<'_>) {
-        if part.mode() == Some(Mode::Points) && part.has(Semantic::Positions) {
-            let count = part.attribute(Semantic::Positions).ok().flatten().map_or(0, |positions| positions.count());
+    fn passed_over(&mut self, primitive: &Primitive<'_>) {
+        if primitive.mode() == Some(Mode::Points) && primitive.has(Semantic::Positions) {
+            let count =
+                primitive.attribute(Semantic::Positions).ok().flatten().map_or(0, |positions| positions.count());
             self.points += 1;
             self.soup.points = self.soup.points.saturating_add(count);
         } else {
@@ -148,8 +149,14 @@ impl<'a> Reader<'a, '_> {
         }
     }
 
-    fn primitive(&mut self, part: &Part<'a>, mode: Mode, place: &DMat4, shared: &mut Shared) -> Result<(), FileError> {
-        let Some(positions) = part.attribute(Semantic::Positions)? else {
+    fn primitive(
+        &mut self,
+        primitive: &Primitive<'a>,
+        mode: Mode,
+        place: &DMat4,
+        shared: &mut Shared,
+    ) -> Result<(), FileError> {
+        let Some(positions) = primitive.attribute(Semantic::Positions)? else {
             self.other_primitives += 1;
             return Ok(());
         };
@@ -161,7 +168,7 @@ impl<'a> Reader<'a, '_> {
                 vertices
             }
         };
-        let order = part.indices()?;
+        let order = primitive.indices()?;
         let indices = match &order {
             Some(order) => accessor::indices(self.document, self.buffers, order, self.allowance)?,
             None => {
@@ -185,19 +192,25 @@ impl<'a> Reader<'a, '_> {
         if place.determinant() < 0.0 {
             self.soup.triangles[start..].iter_mut().for_each(|t| t.swap(1, 2));
         }
-        self.paint(part, start, first, shared)
+        self.paint(primitive, start, first, shared)
     }
 
     /// Colours the triangles from number `start` on, whose vertices are counted from `first`.
-    fn paint(&mut self, part: &Part<'a>, start: usize, first: u32, shared: &mut Shared) -> Result<(), FileError> {
-        let mut tint = part.material()?.map_or_else(Tint::plain, |material| Tint::of(self.document, &material));
+    fn paint(
+        &mut self,
+        primitive: &Primitive<'a>,
+        start: usize,
+        first: u32,
+        shared: &mut Shared,
+    ) -> Result<(), FileError> {
+        let mut tint = primitive.material()?.map_or_else(Tint::plain, |material| Tint::of(self.document, &material));
         if self.looks.keeps_colours {
             tint = Tint::plain();
         }
         if self.looks.is_textured {
-            self.looks.hang(part, (start, first), &mut self.soup, self.allowance);
+            self.looks.hang(primitive, (start, first), &mut self.soup, self.allowance);
         }
-        let vertices = part.attribute(Semantic::Colors(0))?;
+        let vertices = primitive.attribute(Semantic::Colors(0))?;
         let (soup, odd) = (&mut self.soup, &mut 0);
         let triangles = &soup.triangles[start..];
         let Some(vertices) = vertices else {

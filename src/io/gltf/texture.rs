@@ -12,7 +12,7 @@ use super::super::text::counted;
 use super::super::texture::Gallery;
 use super::accessor;
 use super::buffers::{Buffers, decoded_data, percent_decoded};
-use super::checked::{self, Part, Source};
+use super::checked::{self, ImageSource, Primitive};
 use super::material::Tint;
 use crate::io;
 
@@ -36,8 +36,8 @@ pub(super) struct Looks<'a> {
 
 impl<'a> Looks<'a> {
     pub(super) fn new(document: &'a Document, buffers: &'a Buffers<'a>, path: Option<&'a Path>) -> Self {
-        let parts = || document.meshes().flat_map(|mesh| checked::parts(document, &mesh));
-        let has = |semantic: Semantic| parts().any(|part| part.has(semantic.clone()));
+        let primitives = || document.meshes().flat_map(|mesh| checked::primitives(document, &mesh));
+        let has = |semantic: Semantic| primitives().any(|primitive| primitive.has(semantic.clone()));
         let is_textured = document.materials().any(|material| checked::base_texture(document, &material).is_some())
             || has(Semantic::TexCoords(0));
         Self {
@@ -56,12 +56,12 @@ impl<'a> Looks<'a> {
     /// Gives the triangles from number `start` on, whose vertices are counted from `first`, their material and coordinates.
     pub(super) fn hang(
         &mut self,
-        part: &Part<'a>,
+        primitive: &Primitive<'a>,
         (start, first): (usize, u32),
         soup: &mut Soup,
         allowance: &mut Expansion,
     ) {
-        let material = part.material().ok().flatten();
+        let material = primitive.material().ok().flatten();
         if let Some(material) = &material
             && start < soup.triangles.len()
             && let Some(number) = self.material(material, soup)
@@ -71,7 +71,7 @@ impl<'a> Looks<'a> {
         let image = material.and_then(|material| checked::base_texture(self.document, &material));
         let set = image.map_or(0, |(_, set)| set);
         let (document, buffers, warnings) = (self.document, self.buffers, &mut self.warnings);
-        let accessor = match part.attribute(Semantic::TexCoords(set)) {
+        let accessor = match primitive.attribute(Semantic::TexCoords(set)) {
             Ok(Some(accessor)) => accessor,
             Ok(None) => return,
             Err(problem) => return self.absent(&problem),
@@ -129,7 +129,7 @@ impl<'a> Looks<'a> {
             return None;
         };
         let source = checked::source(document, &image);
-        if let Some(Source::Uri(uri)) = &source
+        if let Some(ImageSource::Uri(uri)) = &source
             && !uri.starts_with("data:")
         {
             // Names of files have percent signs in addresses.
@@ -137,10 +137,10 @@ impl<'a> Looks<'a> {
             return Some(self.gallery.image(&name));
         }
         let fetch = |_: &mut Gallery<'_>| match source {
-            Some(Source::Uri(uri)) => {
+            Some(ImageSource::Uri(uri)) => {
                 decoded_data(uri.trim_start_matches("data:")).map_err(|problem| problem.to_string()).map(Arc::from)
             }
-            Some(Source::View(view)) => {
+            Some(ImageSource::View(view)) => {
                 buffers.view(document, view).map(|(bytes, _)| Arc::from(bytes)).map_err(|e| e.problem.to_string())
             }
             None => Err("it has neither bytes nor a file".into()),

@@ -15,7 +15,7 @@ pub const BLOCK_VOXELS: usize = 512;
 /// The values of a block; voxel (x, y, z) of it has index `x + 8 y + 64 z`.
 pub type BlockValues = [f32; BLOCK_VOXELS];
 
-/// A file of a lattice as read. Voxel `v` lies at `origin + spacing * v`.
+/// A file of values over a lattice, as read. Voxel `v` lies at `origin + spacing * v`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridFile {
     /// The format that was found.
@@ -48,7 +48,7 @@ pub enum GridValues {
 /// Values stored in blocks of 8³ voxels where they differ, and in boxes of one value elsewhere.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SparseValues {
-    /// Sorted by the corner's z, then y, then x; no two at one place.
+    /// The blocks, sorted by the z, then the y, then the x of their corners; no two are at one place.
     pub blocks: Vec<GridBlock>,
     /// Boxes of one value that is not the background, in an order of their own; none overlaps a block.
     pub tiles: Vec<GridTile>,
@@ -58,25 +58,25 @@ pub struct SparseValues {
     pub(super) shift: IVec3,
 }
 
-/// 8³ voxels.
+/// A block of 8³ voxels, each with a value of its own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GridBlock {
-    /// Its first voxel; a multiple of 8 along each axis.
+    /// The first voxel of the block; a multiple of 8 along each axis.
     pub corner: IVec3,
-    /// The values.
+    /// The values of the voxels.
     pub values: Box<BlockValues>,
 }
 
-/// A box of voxels of one value.
+/// A box of voxels that all have one value, which VDB calls a tile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridTile {
-    /// Its first voxel; a multiple of 8 along each axis.
+    /// The first voxel of the box; a multiple of 8 along each axis.
     pub corner: IVec3,
     /// Voxels along x and y: 8, 128 or 4096.
     pub side: i32,
     /// Voxels along z, a multiple of `side`.
     pub length: i32,
-    /// The value.
+    /// The value of all voxels of the box.
     pub value: f32,
 }
 
@@ -218,7 +218,7 @@ pub(super) fn spacing_of_axes(axes: [[f64; 3]; 3]) -> Result<f64, FileProblem> {
     one_spacing([axes[0][0], axes[1][1], axes[2][2]])
 }
 
-/// What the values of a lattice are like.
+/// The range of the values of a lattice, and how many there are on either side of zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridMeasures {
     /// The smallest and the largest value.
@@ -268,7 +268,7 @@ impl GridFile {
         }
     }
 
-    /// Looks at all values, those of boxes at once.
+    /// Measures all values. Boxes of one value are counted without visiting their voxels.
     pub fn measures(&self) -> GridMeasures {
         let mut found = GridMeasures { range: [f32::INFINITY, f32::NEG_INFINITY], below_zero: 0, stored: 0 };
         let mut add = |value: f32, count: u64, stored: bool| {

@@ -1,4 +1,4 @@
-//! The formats, told by content first, then by extension.
+//! The formats of lattices, told by content first, then by extension.
 
 use std::ffi::OsStr;
 use std::fmt;
@@ -77,7 +77,7 @@ impl fmt::Display for GridFormat {
     }
 }
 
-/// A name that is no format for lattices.
+/// A word that names no format of lattices.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no format for lattices known here; use vti, nrrd, npy or vdb")]
 pub struct UnknownGridFormat(pub String);

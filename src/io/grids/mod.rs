@@ -36,17 +36,17 @@ pub struct DistanceSamples<'a> {
     pub dims: [usize; 3],
     /// The unit of all lengths, where it is known.
     pub unit: Option<Unit>,
-    /// Values are clamped to ± this, model units; `None`: they are not.
+    /// The values are clamped to ± this, model units; `None` where they are not clamped.
     pub band: Option<f64>,
     /// Appends to the list the values of plane `z`, model units and negative inside: x changes fastest, then y.
     pub plane: &'a (dyn Fn(usize, &mut Vec<f32>) + Sync),
-    /// The same values in blocks, where there are such; else formats that store blocks make them of the planes.
+    /// The same values in blocks, where the caller has them so. Without them, formats that store blocks make them of the planes.
     pub blocks: Option<&'a SampleBlocks<'a>>,
 }
 
 /// Values near the surface in blocks of 8³ voxels. The first voxel of block `b` is `8 b`.
 pub struct SampleBlocks<'a> {
-    /// The blocks that have values, none twice; those outside the lattice do not count. Wherever two neighbouring voxels
+    /// The numbers of the blocks that have values, none twice; those outside the lattice do not count. Wherever two neighbouring voxels
     /// lie on different sides, their blocks are among them.
     pub stored: &'a [IVec3],
     /// The values of block `stored[n]`, model units and negative inside. What lies beyond the lattice does not count.

@@ -220,7 +220,7 @@ impl Read<'_> {
     /// there, because names need not be UTF-8.
     fn described(&mut self, bytes: &[u8]) -> Vec<tobj::Material> {
         let mut sound = Vec::with_capacity(bytes.len().min(1 << 16));
-        // Whether the material is one that faces have and that no file before this one has described.
+        // The material that is being described, if faces have it and nothing has described it before.
         let (mut current, mut begun) = (None, BTreeSet::new());
         for (_, line) in Lines::new(bytes) {
             let mut words = Words::new(line);

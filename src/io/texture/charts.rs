@@ -15,16 +15,16 @@ const UNEVEN: f64 = 1e-3;
 type Corner = ([u64; 3], [u32; 2]);
 
 /// A side of a triangle: which triangle, and which of its corners is opposite.
-type Side = (u32, usize);
+type TriangleSide = (u32, usize);
 
 impl TextureMap {
-    /// A number for each triangle of `mesh`, the same for triangles that have one material and the same coordinates at both ends of a common
-    /// edge, from where the texture goes on evenly: laid into one plane, they are one picture. Where there are no coordinates the material alone
-    /// counts.
+    /// A number for each triangle of `mesh`, which is the same for all triangles of a *chart*: a piece of the surface that, laid into one plane, shows
+    /// one picture. Two neighbours are of one chart if they have the same material and, at both ends of their common edge, the same
+    /// coordinates, and if the texture goes on evenly over that edge. Where there are no coordinates, the material alone counts.
     pub fn charts(&self, mesh: &TriMesh) -> Vec<u32> {
         let count = mesh.triangles.len();
         let mut root: Vec<u32> = (0..count as u32).collect();
-        let mut first_at: FxHashMap<[Corner; 2], Side> = FxHashMap::default();
+        let mut first_at: FxHashMap<[Corner; 2], TriangleSide> = FxHashMap::default();
         let mut first_of: FxHashMap<Option<u32>, u32> = FxHashMap::default();
         for t in 0..count {
             let material = self.material_of.get(t).copied().flatten();
@@ -51,7 +51,7 @@ impl TextureMap {
     }
 
     /// Whether the texture of one triangle goes on evenly over the common side to another.
-    fn goes_on(&self, mesh: &TriMesh, (s, i): Side, (t, k): Side) -> bool {
+    fn goes_on(&self, mesh: &TriMesh, (s, i): TriangleSide, (t, k): TriangleSide) -> bool {
         let (Some(from), Some(to)) = (self.coordinates[s as usize], self.coordinates[t as usize]) else { return false };
         let (own, next) = (mesh.corners(s as usize), mesh.corners(t as usize));
         let place = |coordinates: &TexCoords, k: usize| DVec2::from(coordinates[k % 3].map(f64::from));

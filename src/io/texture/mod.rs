@@ -21,19 +21,20 @@ pub(super) use gather::Woven;
 pub use names::SideFile;
 pub(super) use names::library_name;
 
-/// Where the three corners of a triangle lie on an image: across, then up or down (see [`TextureMap::downward`]), each from 0 to 1.
+/// Where the three corners of a triangle lie on an image. Each place is a pair: across the image, then up or down
+/// (see [`TextureMap::downward`]); 0 to 1 is the width and the height of the image.
 pub type TexCoords = [[f32; 2]; 3];
 
-/// The textures of a mesh. The lists by triangle are as long as the mesh has triangles.
+/// The textures of a mesh: coordinates on images, materials, images. The lists by triangle have one entry for each triangle of the mesh.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TextureMap {
     /// The coordinates of each triangle's corners, where it has some.
     pub coordinates: Vec<Option<TexCoords>>,
     /// The material of each triangle, where it has one.
     pub material_of: Vec<Option<u32>>,
-    /// The materials.
+    /// The materials, which `material_of` numbers from 0.
     pub materials: Vec<Material>,
-    /// The images.
+    /// The images, which the materials number from 0.
     pub images: Vec<TextureImage>,
     /// Whether the second coordinate counts from the upper edge of the image down, as glTF has it; else from the lower edge up, as all others
     /// have it.
@@ -42,18 +43,18 @@ pub struct TextureMap {
     pub files: Vec<PathBuf>,
 }
 
-/// How a surface looks.
+/// How the surface of some triangles looks.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Material {
-    /// Its name in the file; may be empty.
+    /// The name of the material in the file; may be empty.
     pub name: String,
     /// The colour that the image is multiplied by, or that the surface has without one; `None` where the file says none.
     pub colour: Option<Rgba>,
-    /// The number of its image.
+    /// The number of the material's image in [`TextureMap::images`].
     pub image: Option<u32>,
 }
 
-/// An image as it is in its file; the pixels are never looked at.
+/// An image as the bytes of its file. Nothing here decodes the pixels.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TextureImage {
     /// The name of its file, without a folder.
@@ -74,7 +75,7 @@ pub enum ImageKind {
 }
 
 impl TextureImage {
-    /// What it is.
+    /// The kind of the image, told by its first bytes.
     pub fn kind(&self) -> ImageKind {
         match &*self.bytes {
             [0x89, b'P', b'N', b'G', ..] => ImageKind::Png,
@@ -83,7 +84,7 @@ impl TextureImage {
         }
     }
 
-    /// Its type as packages name it; `None` for what glTF and 3MF do not hold.
+    /// The media type of the image as glTF and 3MF name it; `None` for kinds of images that these formats do not hold.
     pub fn media_type(&self) -> Option<&'static str> {
         match self.kind() {
             ImageKind::Png => Some("image/png"),
@@ -103,40 +104,41 @@ impl TextureMap {
             && self.materials.iter().all(|material| within(material.image, self.images.len()))
     }
 
-    /// Bytes that it takes in memory, about.
+    /// About how many bytes the textures take in memory.
     pub fn bytes(&self) -> u64 {
         let images: usize = self.images.iter().map(|image| image.bytes.len()).sum();
         let each = size_of::<Option<TexCoords>>() + size_of::<Option<u32>>();
         (images + each * self.coordinates.len()) as u64
     }
 
-    /// Whether it is more than names of materials.
+    /// Whether there is anything to be seen: coordinates, or a material with a colour or an image. Names alone show nothing.
     pub fn shows_anything(&self) -> bool {
         self.has_coordinates() || self.materials.iter().any(|m| m.colour.is_some() || m.image.is_some())
     }
 
-    /// Whether a triangle has coordinates.
+    /// Whether any triangle has coordinates.
     pub fn has_coordinates(&self) -> bool {
         self.coordinates.iter().any(Option::is_some)
     }
 
-    /// The material of a triangle.
+    /// The material of a triangle, where it has one that is there.
     pub fn material(&self, triangle: usize) -> Option<&Material> {
         self.materials.get(self.material_of.get(triangle).copied().flatten()? as usize)
     }
 
-    /// The image of a triangle: only where it has coordinates, too.
+    /// The number of the image that a triangle shows: that of its material, if the triangle has coordinates on it.
     pub fn image(&self, triangle: usize) -> Option<u32> {
         self.coordinates.get(triangle)?.and_then(|_| self.material(triangle)?.image)
     }
 
-    /// The coordinates of a triangle's corners, the second one counted down from the upper edge, or up from the lower.
+    /// The coordinates of a triangle's corners. The second number of each counts down from the upper edge of the image if `downward`, else up
+    /// from the lower edge, whichever way the file has it.
     pub fn at(&self, triangle: usize, downward: bool) -> Option<TexCoords> {
         let corners = self.coordinates.get(triangle).copied().flatten()?;
         Some(if downward == self.downward { corners } else { corners.map(|[u, v]| [u, 1.0 - v]) })
     }
 
-    /// The colours of the triangles by their materials, if one has a colour other than white.
+    /// The colours that the materials give to the triangles; `None` if all of them are white.
     pub fn material_colours(&self) -> Option<Colours> {
         let colour = |t: usize| self.material(t).and_then(|material| material.colour).unwrap_or(WHITE);
         let colours: Vec<Rgba> = (0..self.material_of.len()).map(colour).collect();
@@ -144,7 +146,7 @@ impl TextureMap {
     }
 
     /// Whether `other` has the same coordinates, and materials and images as far as a file of `format` holds them.
-    pub(crate) fn is_held(&self, other: Option<&Self>, format: Format) -> bool {
+    pub fn is_held(&self, other: Option<&Self>, format: Format) -> bool {
         if matches!(format, Format::Stl | Format::Off) || !self.shows_anything() {
             return true;
         }
@@ -177,7 +179,7 @@ impl TextureMap {
         self.images.get(number as usize)?.media_type().map(|_| number)
     }
 
-    /// What of it a file of `format` cannot hold, in sentences. `beside`: whether there can be files beside it.
+    /// What of the textures a file of `format` cannot hold, in sentences. `beside` says whether there can be files beside it.
     pub fn lost_in(&self, format: Format, beside: bool) -> Vec<String> {
         if !self.shows_anything() {
             return Vec::new();
@@ -216,8 +218,8 @@ impl TextureMap {
         self.coordinates[triangle].is_some() && self.packed_image(triangle).is_none()
     }
 
-    /// The triangles in this order, each of them once: those of one material together, else as they are. `None` when they are that already.
-    /// glTF holds the triangles of a material in one piece.
+    /// An order of the triangles in which those of one material follow one another, as glTF holds them in one piece; within a material the
+    /// order stays. `None` when the triangles are in such an order already.
     pub fn by_material(&self) -> Option<Vec<u32>> {
         let key = |t: &u32| (self.material_of[*t as usize], self.coordinates[*t as usize].is_some());
         let mut order: Vec<u32> = (0..self.material_of.len() as u32).collect();

@@ -19,9 +19,9 @@ const LONGEST: usize = 80;
 /// A file that belongs beside a mesh.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SideFile {
-    /// Its name, without a folder.
+    /// The name of the file, without a folder.
     pub name: String,
-    /// What is in it.
+    /// The bytes of the file.
     pub bytes: Arc<[u8]>,
 }
 

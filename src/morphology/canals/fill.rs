@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use crate::lattice::{BRICK, BRICK_VOXELS, Grid, Lattice, Slot, brick_of, index_in_brick, voxel_in_brick};
 use crate::mesh::edges::Union;
 use crate::morphology::closed::{own_distance, unchanged};
-use crate::morphology::{Balls, Body, OffsetError, around};
+use crate::morphology::{Balls, Gauge, OffsetError, around};
 use crate::progress::Progress;
 
 /// The number of no voxel.
@@ -37,7 +37,7 @@ pub(super) struct FilledPart {
 impl Fill {
     /// Those outside of `original` and, by more than a closing takes for unchanged, within the closing.
     pub(super) fn new(
-        original: &Body<'_>,
+        original: &Gauge<'_>,
         balls: &Balls<'_>,
         lattice: &Lattice,
         progress: &Progress,

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::closed::{BESIDE, samples};
-use super::{Balls, Body, Centres, OffsetError, Region};
+use super::{Balls, Centres, Gauge, OffsetError, Region};
 use crate::lattice::{Grid, Lattice};
 use crate::mesh::{Plane, TriMesh};
 use crate::progress::Progress;
@@ -105,7 +105,7 @@ impl Canals {
 /// # Errors
 /// Those of [`crate::sdf::exact::exact`], and a stop.
 pub fn canals(
-    original: &Body<'_>,
+    original: &Gauge<'_>,
     (balls, centres): (&Balls<'_>, &Centres),
     lattice: &Lattice,
     progress: &Progress,

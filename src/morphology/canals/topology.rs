@@ -6,7 +6,7 @@ use super::fill::{Fill, FilledPart, sides};
 use crate::lattice::Lattice;
 use crate::mesh::TriMesh;
 use crate::mesh::edges::Union;
-use crate::morphology::Body;
+use crate::morphology::Gauge;
 
 /// What filling one part changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub(super) fn shells(mesh: &TriMesh) -> Vec<u32> {
 pub(super) fn changes(
     part: &FilledPart,
     fill: &Fill,
-    bodies: [&Body<'_>; 2],
+    bodies: [&Gauge<'_>; 2],
     shells: [&Vec<u32>; 2],
     lattice: &Lattice,
 ) -> Changes {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, IVec3};
 use meshwright::contour::{
-    Collapsed, Contour, ContourOptions, Crossing, Edge, Ground, Merge, collapse_same_voxel, contour,
+    Collapsed, Contour, ContourOptions, Crossing, Ground, LatticeEdge, Merge, collapse_same_voxel, contour,
 };
 use meshwright::lattice::{Bricks, DistanceField, Grid, Lattice, brick_of, index_in_brick};
 use meshwright::mesh::{Plane, TriMesh, ValidateOptions, validate};
@@ -68,7 +68,7 @@ impl Case {
     }
 
     /// A crossing for most edges: some extreme, some absent. Each has its own source triangle.
-    pub fn crossing(&self, edge: Edge) -> Option<Crossing> {
+    pub fn crossing(&self, edge: LatticeEdge) -> Option<Crossing> {
         let [kind, t] = [0, 1].map(|k| noise(self.seed, edge.voxel, 8 * k + u32::from(edge.axis)));
         let triangle = (noise(self.seed, edge.voxel, 32 + u32::from(edge.axis)) * 1000.0) as u32;
         let t = if kind < self.extreme { t.round() } else { t };

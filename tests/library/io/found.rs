@@ -203,7 +203,8 @@ fn texts_in_utf16_and_with_byte_order_marks_read_alike() {
 #[test]
 fn files_that_are_something_else_are_named_with_what_to_do() {
     let named = |bytes: &[u8], name: &str, words: &[&str]| {
-        let text = problem(bytes, name).to_string();
+        let error = read_bytes(bytes, None, Some(name.as_ref())).expect_err(name);
+        let text = format!("{error} ({})", error.hint().unwrap_or_default());
         words.iter().for_each(|word| assert!(text.contains(word), "`{word}` is missing in: {text}"));
     };
     let page = b"<!DOCTYPE html>\n<html><head><title>404</title></head><body>not found</body></html>".repeat(20);

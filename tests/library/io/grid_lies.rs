@@ -134,8 +134,8 @@ static ORIGINALS: LazyLock<Vec<(GridFormat, Vec<u8>)>> = LazyLock::new(originals
 /// The seeds of the fuzzer and what the writers make, and what OpenVDB makes.
 fn originals() -> Vec<(GridFormat, Vec<u8>)> {
     let mut all: Vec<_> = GridFormat::ALL.map(|format| (format, small(format))).to_vec();
-    let folders =
-        ["fuzz/seeds/grid", "tests/io/openvdb"].map(|folder| Path::new(env!("CARGO_MANIFEST_DIR")).join(folder));
+    let folders = ["fuzz/seeds/grid", "tests/library/io/openvdb"]
+        .map(|folder| Path::new(env!("CARGO_MANIFEST_DIR")).join(folder));
     for folder in folders {
         let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
         files.sort();

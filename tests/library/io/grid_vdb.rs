@@ -4,7 +4,7 @@ use glam::{DVec3, IVec3};
 use meshwright::io::{GridFile, GridFormat, GridValues, read_grid};
 
 fn read(name: &str) -> GridFile {
-    let path = format!("{}/tests/io/openvdb/{name}.vdb", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/tests/library/io/openvdb/{name}.vdb", env!("CARGO_MANIFEST_DIR"));
     read_grid(path).unwrap_or_else(|error| panic!("{error}"))
 }
 

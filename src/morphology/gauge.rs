@@ -1,4 +1,4 @@
-//! A solid or a sheet, asked for its distance.
+//! What the distance to a solid or a sheet is measured with.
 
 use glam::DVec3;
 
@@ -12,8 +12,8 @@ const AT_LEVEL: f64 = 1e-7;
 /// Steps towards one point of the level; the second half of them halve what is left.
 const MOST_STEPS: usize = 60;
 
-/// A solid, or a sheet, that can be asked for its distance, or for the distance that keeps its edges sharp.
-pub struct Body<'a> {
+/// Measures the distance to a solid or to a sheet, or the distance whose levels keep the edges sharp.
+pub struct Gauge<'a> {
     pub(super) mesh: &'a TriMesh,
     distance: ExactDistance,
     around: Around,
@@ -23,7 +23,7 @@ pub struct Body<'a> {
     pub(super) sheet: bool,
 }
 
-impl<'a> Body<'a> {
+impl<'a> Gauge<'a> {
     /// The solid bounded by `mesh`, a closed, oriented manifold. With `mitre`, edges that an offset would make round stay
     /// sharp as far as this many times the offset from where they were, at least 1.
     pub fn new(mesh: &'a TriMesh, mitre: Option<f64>) -> Self {

@@ -1,0 +1,64 @@
+//! The shaders as pipelines. What is done with them stands beside each kind of job.
+
+use super::shaders;
+
+/// Slots of triangles on the rays, as peeling draws them.
+pub(super) const SLOTS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// The target of scattering. Nothing is drawn to it: passes must have a target.
+pub(super) const TARGET: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+
+/// Finds the triangles that may cross the rays of a tile.
+#[derive(Debug)]
+pub(super) struct Setup {
+    pub pipeline: wgpu::ComputePipeline,
+}
+
+impl Setup {
+    pub fn new(device: &wgpu::Device) -> Self {
+        Self { pipeline: shaders::compute(device, shaders::SETUP, "set_up", shaders::SETUP_CONSTANTS) }
+    }
+}
+
+/// Draws one layer.
+#[derive(Debug)]
+pub(super) struct Peel {
+    pub pipeline: wgpu::RenderPipeline,
+}
+
+impl Peel {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let target = wgpu::ColorTargetState { format: SLOTS, blend: None, write_mask: wgpu::ColorWrites::ALL };
+        let constants = shaders::PEEL_CONSTANTS;
+        Self { pipeline: shaders::render(device, shaders::PEEL, "peel", constants, target, Some(shaders::nearest())) }
+    }
+}
+
+/// Counts the crossings of each ray, and writes them.
+#[derive(Debug)]
+pub(super) struct Scatter {
+    pub count: wgpu::RenderPipeline,
+    pub scatter: wgpu::RenderPipeline,
+    pub scan: Scan,
+}
+
+impl Scatter {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let target = wgpu::ColorTargetState { format: TARGET, blend: None, write_mask: wgpu::ColorWrites::empty() };
+        let pipeline = |entry| shaders::render(device, shaders::SCATTER, entry, &[], target.clone(), None);
+        Self { count: pipeline("count"), scatter: pipeline("scatter"), scan: Scan::new(device) }
+    }
+}
+
+/// The two passes of a sum of all before.
+#[derive(Debug)]
+pub(super) struct Scan {
+    pub sum_blocks: wgpu::ComputePipeline,
+    pub raise_blocks: wgpu::ComputePipeline,
+}
+
+impl Scan {
+    fn new(device: &wgpu::Device) -> Self {
+        let pipeline = |entry| shaders::compute(device, shaders::SCAN, entry, &[]);
+        Self { sum_blocks: pipeline("sum_blocks"), raise_blocks: pipeline("raise_blocks") }
+    }
+}
