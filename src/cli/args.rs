@@ -97,7 +97,6 @@ pub enum Verb {
     #[command(after_help = EXIT_CODES)]
     Devices(DevicesArgs),
     /// Print the JSON schema of the reports that --json and --report write
-    #[cfg(feature = "schema")]
     #[command(after_help = EXIT_CODES)]
     Schema,
 }

@@ -5,8 +5,7 @@ use serde::Serialize;
 use crate::mesh::Validity;
 
 /// One input in the report.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
 pub struct InputEntry {
     /// The path as given.
     pub path: String,
@@ -33,8 +32,7 @@ pub struct InputEntry {
 }
 
 /// An object within a file.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
 pub struct PartEntry {
     /// Its name.
     pub name: String,
@@ -43,8 +41,7 @@ pub struct PartEntry {
 }
 
 /// The output in the report.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
 pub struct OutputEntry {
     /// The path as given.
     pub path: String,
@@ -62,8 +59,7 @@ pub struct OutputEntry {
 }
 
 /// A lattice in the report, in the unit of the run.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
 pub struct GridEntry {
     /// Voxels along x, y, z.
     pub dims: [usize; 3],
@@ -84,8 +80,7 @@ pub struct GridEntry {
 }
 
 /// A slice in the report.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
 pub struct SliceEntry {
     /// The input.
     pub path: String,
@@ -102,8 +97,7 @@ pub struct SliceEntry {
 }
 
 /// The adapters, and which ones would be taken.
-#[derive(Debug, Default, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Default, Serialize, schemars::JsonSchema)]
 pub struct DeviceReport {
     /// Whether the program was built with the feature `gpu`.
     pub built: bool,

@@ -11,8 +11,7 @@ use crate::pipeline::{Advice, LimitError, Trouble};
 use crate::progress::Stopped;
 
 /// The exit status of the process.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Exit {
     /// Done, and verified on the written file.
@@ -62,8 +61,7 @@ pub struct Asked {
 }
 
 /// Why a run ended without its result: a sentence, perhaps something to try, and the exit status.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
 pub struct Failure {
     /// The exit status.
     #[serde(skip)]

@@ -48,7 +48,6 @@ mod report;
 mod reporting;
 mod result;
 mod say;
-#[cfg(feature = "schema")]
 mod schema;
 mod sdf;
 mod sdf_args;
@@ -193,7 +192,6 @@ fn dispatch(verb: &Verb) -> Exit {
             let job = Job { inputs, made, ..Job::new("render", &args.common) };
             run(job, |session, report| render::run(args, session, report))
         }
-        #[cfg(feature = "schema")]
         Verb::Schema => schema::run(),
     }
 }

@@ -16,8 +16,7 @@ use crate::progress::Stage;
 pub const SCHEMA: u32 = 2;
 
 /// The account of one run of the program.
-#[derive(Debug, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 pub struct RunReport {
     /// Version of this layout.
     pub schema: u32,

@@ -10,8 +10,7 @@ use crate::mesh::{MassProperties, Overhang};
 use crate::pipeline::{DistancePlan, DistanceReport, Dropped, FieldReport, Plan, Report, ThicknessReport};
 
 /// What a run found and made. Of a run that failed there is what it had found until then, and nothing that it wrote.
-#[derive(Debug, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Serialize, schemars::JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum RunResult {
     /// Of `--plan` with a verb that makes a solid.
@@ -106,8 +105,7 @@ pub enum RunResult {
 }
 
 /// One result of `field`.
-#[derive(Debug, Clone, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
 pub struct FrameEntry {
     /// What it was made of.
     pub field: FieldReport,

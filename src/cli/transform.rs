@@ -135,8 +135,7 @@ fn signed(text: &str) -> Result<Signed, String> {
 }
 
 /// What was done, in the order in which it was.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct Transformed {
     /// The factors along the axes.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -2,10 +2,10 @@
 
 use super::FRAME;
 use super::error::LanguageError;
-use super::functions::FUNCTIONS;
+use super::functions::{FUNCTIONS, by_name};
 use super::syntax::{Form, Raw, Raws};
-use super::table::{Axis, Function, Kind, List, Parameter, Presence, Preset};
-use super::tree::{Argument, Call, Node, NodeKind, Quantity, Span, Typed, check_range};
+use super::table::{Axis, Kind, List, Parameter, Presence, Preset};
+use super::tree::{Argument, Call, Function, Node, NodeKind, Quantity, Span, Typed, check_range};
 
 type Result<T> = std::result::Result<T, LanguageError>;
 
@@ -43,7 +43,7 @@ impl Checker<'_> {
                 NodeKind::Call(Call { function, fields, arguments: Vec::new(), list: Vec::new() })
             }
             Form::Call { name, arguments, list } => {
-                let function = Function::by_name(name).ok_or_else(|| unknown_function(name, raw.span))?;
+                let function = by_name(name).ok_or_else(|| unknown_function(name, raw.span))?;
                 NodeKind::Call(self.call(function, arguments, list.as_ref(), raw.span)?)
             }
         };
@@ -58,7 +58,9 @@ impl Checker<'_> {
         }
         let known = || self.names.iter().map(|name| name.to_string()).collect();
         let operand = self.names.iter().position(|n| *n == name);
-        let operand = operand.ok_or_else(|| LanguageError::UnknownName { at, name: name.into(), known: known() })?;
+        let function = || by_name(name).map(Function::to_string);
+        let unknown = || LanguageError::UnknownName { at, name: name.into(), known: known(), function: function() };
+        let operand = operand.ok_or_else(unknown)?;
         Ok(NodeKind::Name { operand, name: name.into() })
     }
 

@@ -1,8 +1,5 @@
 //! What is wrong with a text, and where.
 
-use super::functions::COMPLEMENT;
-use super::table::Function;
-
 /// Why the text is no field over the given names. Positions are bytes from the start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LanguageError {
@@ -43,6 +40,8 @@ pub enum LanguageError {
         name: String,
         /// The names there are.
         known: Vec<String>,
+        /// How the function of that name is called, if there is one.
+        function: Option<String>,
     },
     /// Operands whose names the text does not use.
     #[error("the expression does not use {}", .names.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", "))]
@@ -158,8 +157,8 @@ pub enum LanguageError {
     NotBoolean {
         /// Where.
         at: usize,
-        /// Which.
-        function: &'static Function,
+        /// How it is called.
+        function: String,
     },
     /// `t` where there is one picture only.
     #[error("`t` has no value here: it runs from 0 to 1 over the frames of a sequence")]
@@ -196,7 +195,7 @@ impl LanguageError {
     /// Something to try.
     pub fn hint(&self) -> Option<String> {
         match self {
-            Self::UnknownName { name, known, .. } => Some(match Function::by_name(name) {
+            Self::UnknownName { name, known, function, .. } => Some(match function {
                 Some(function) => format!("`{name}` is a function: {}", function),
                 None if known.is_empty() => format!("give it one: {name}=FILE"),
                 None => format!("the names given are {}", known.join(", ")),
@@ -207,7 +206,7 @@ impl LanguageError {
                 Some(nearest) => format!("did you mean `{nearest}`?"),
                 None => "--help lists all functions".into(),
             }),
-            Self::NotBoolean { function, .. } if **function == COMPLEMENT => {
+            Self::NotBoolean { function, .. } if function.starts_with("complement(") => {
                 Some("what is outside has no end: `a - b` is what is inside a and outside b".into())
             }
             Self::NotBoolean { .. } => {

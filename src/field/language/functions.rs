@@ -7,7 +7,8 @@ use super::build::{
     aligned, blobs, blur, body, coarse, filter, half_space, middle, morphed_by_radii, moved, pair, ramp,
     scattered_points, smoothing,
 };
-use super::table::{Axis, Build, Function, Gives, Join, Kind, List, Parameter, Presence, Preset, Reading};
+use super::table::{Axis, Kind, List, Parameter, Presence, Preset, Reading};
+use super::tree::{Build, Function, Gives, Join};
 use crate::field::blend::{blend_difference, blend_intersection, blend_union};
 use crate::field::filter::smooth;
 use crate::field::{Placement, Solid, algebra, blob, material};
@@ -224,6 +225,11 @@ pub static FUNCTIONS: &[&Function] = &[
     &read("robust", Reading::Robust, "the smooth field that repairs are made from"),
     &read("levels", Reading::Levels, "the distance to the nearest triangle, with inside and outside told by the outlines of horizontal slices"),
 ];
+
+/// The function that is called `name`.
+pub fn by_name(name: &str) -> Option<&'static Function> {
+    FUNCTIONS.iter().copied().find(|function| function.name == name)
+}
 
 /// What `-a` is short for.
 pub(super) static COMPLEMENT: Function = of("complement", &["a"], "what is outside of a; short: -a", |_, fields, _| {

@@ -3,7 +3,8 @@
 use std::fmt;
 
 use super::functions::FUNCTIONS;
-use super::table::{Axis, Function, Kind, List, Parameter, Presence, Preset};
+use super::table::{Axis, Kind, List, Parameter, Presence, Preset};
+use super::tree::Function;
 
 /// The functions as `--help` lists them: how each is written, and below that what it gives.
 pub fn help() -> String {

@@ -17,6 +17,7 @@ mod check;
 mod error;
 mod functions;
 mod help;
+mod site;
 mod syntax;
 mod table;
 #[cfg(test)]
@@ -26,12 +27,13 @@ mod tests_boolean;
 mod tree;
 
 use crate::ldi::Expression;
-pub use build::{BuildError, Operands, Site, build, shape_extent};
+pub use build::{build, shape_extent};
 pub use error::LanguageError;
-pub use functions::FUNCTIONS;
+pub use functions::{FUNCTIONS, by_name};
 pub use help::{help, markdown};
-pub use table::{Axis, Build, Function, Gives, Join, Kind, List, Parameter, Presence, Preset, Reading};
-pub use tree::{Argument, Call, Node, NodeKind, Place, Quantity, Span, Typed, Value};
+pub use site::{BuildError, Operands, Site};
+pub use table::{Axis, Kind, List, Parameter, Presence, Preset, Reading};
+pub use tree::{Argument, Build, Call, Function, Gives, Join, Node, NodeKind, Place, Quantity, Span, Typed, Value};
 
 /// The name that stands for the share of a sequence of frames that has passed; no operand can go by it.
 pub const FRAME: &str = "t";

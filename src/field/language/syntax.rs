@@ -11,8 +11,7 @@ use winnow::{ModalResult, Parser};
 
 use super::error::LanguageError;
 use super::functions::{COMPLEMENT, DIFFERENCE, INTERSECTION, SYMMETRIC_DIFFERENCE, UNION};
-use super::table::Function;
-use super::tree::Span;
+use super::tree::{Function, Span};
 
 /// More parentheses in each other than this are refused, so that no text can exhaust the stack.
 pub(super) const MAX_DEPTH: usize = 64;

@@ -1,50 +1,4 @@
-//! A row of the table of functions: what a function takes, what it gives, and how that is made.
-
-use std::fmt;
-
-use super::build::{BuildError, Site};
-use super::functions::FUNCTIONS;
-use super::tree::{Call, Value};
-use crate::field::Shared;
-use crate::ldi::Expression;
-
-/// A function of the language: one row of [`FUNCTIONS`], which says all there is to say of it.
-#[derive(Clone, Copy)]
-pub struct Function {
-    /// What it is called by.
-    pub name: &'static str,
-    /// What its fields are called where it is explained; as many are needed.
-    pub fields: &'static [&'static str],
-    /// Whether any number of fields may follow; then there are no parameters.
-    pub more_fields: bool,
-    /// What comes after the fields, in order.
-    pub parameters: &'static [Parameter],
-    /// What comes after a `;`.
-    pub list: List,
-    /// One line on what it gives.
-    pub help: &'static str,
-    /// Where its field comes from.
-    pub gives: Gives,
-    /// What it does to two solids, where it is a boolean operation; more solids are joined one after another, from the left.
-    pub boolean: Option<Join>,
-    /// Whether its values are no distances to a shape, but measures of something else.
-    pub measure: bool,
-}
-
-/// Makes a boolean expression of two.
-pub type Join = fn(Expression, Expression) -> Expression;
-
-/// Makes the field of a call. The fields of the call are made already, and there are as many as the function needs.
-pub type Build = fn(&Call<Value>, &[Shared], &mut Site<'_>) -> Result<Shared, BuildError>;
-
-/// Where the field of a function comes from.
-#[derive(Clone, Copy)]
-pub enum Gives {
-    /// It is made of the function's fields.
-    Made(Build),
-    /// It is an operand, read in a way of its own; the function's field must be the plain name of an operand.
-    Read(Reading),
-}
+//! What the table of functions says of parameters, lists and operands.
 
 /// How an operand becomes a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -142,31 +96,4 @@ pub enum List {
     Weights,
     /// A value for each field.
     Values,
-}
-
-impl Function {
-    /// The function that is called `name`.
-    pub fn by_name(name: &str) -> Option<&'static Self> {
-        FUNCTIONS.iter().copied().find(|function| function.name == name)
-    }
-
-    /// Whether its field must be the plain name of an operand.
-    pub fn takes_a_name(&self) -> bool {
-        matches!(self.gives, Gives::Read(_))
-    }
-}
-
-/// Functions are told apart by their names.
-impl PartialEq for Function {
-    fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
-    }
-}
-
-impl Eq for Function {}
-
-impl fmt::Debug for Function {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Function").field(&self.name).finish()
-    }
 }

@@ -262,7 +262,7 @@ fn monstrous_texts_are_refused_before_they_recurse() {
 #[test]
 fn the_table_can_be_read_one_way_only() {
     for signature in FUNCTIONS.iter().copied() {
-        assert_eq!(Function::by_name(signature.name), Some(signature));
+        assert_eq!(by_name(signature.name), Some(signature));
         assert!(
             !signature.more_fields || signature.parameters.is_empty(),
             "where would the fields of {signature} end?"

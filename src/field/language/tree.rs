@@ -5,7 +5,9 @@ use std::fmt;
 use std::ops::Range;
 
 use super::error::LanguageError;
-use super::table::{Axis, Function, Gives, Kind, List, Parameter, Reading};
+use super::site::{BuildError, Site};
+use super::table::{Axis, Kind, List, Parameter, Reading};
+use crate::field::Shared;
 use crate::ldi::Expression;
 
 /// A piece of the text, in bytes from its start.
@@ -57,6 +59,66 @@ pub struct Call<A = Typed> {
     pub arguments: Vec<A>,
     /// Weights or values, one for each field; empty for functions that take none.
     pub list: Vec<f64>,
+}
+
+/// A function of the language: one row of [`FUNCTIONS`](super::FUNCTIONS), which says all there is to say of it.
+#[derive(Clone, Copy)]
+pub struct Function {
+    /// What it is called by.
+    pub name: &'static str,
+    /// What its fields are called where it is explained; as many are needed.
+    pub fields: &'static [&'static str],
+    /// Whether any number of fields may follow; then there are no parameters.
+    pub more_fields: bool,
+    /// What comes after the fields, in order.
+    pub parameters: &'static [Parameter],
+    /// What comes after a `;`.
+    pub list: List,
+    /// One line on what it gives.
+    pub help: &'static str,
+    /// Where its field comes from.
+    pub gives: Gives,
+    /// What it does to two solids, where it is a boolean operation; more solids are joined one after another, from the left.
+    pub boolean: Option<Join>,
+    /// Whether its values are no distances to a shape, but measures of something else.
+    pub measure: bool,
+}
+
+/// Makes a boolean expression of two.
+pub type Join = fn(Expression, Expression) -> Expression;
+
+/// Makes the field of a call. The fields of the call are made already, and there are as many as the function needs.
+pub type Build = fn(&Call<Value>, &[Shared], &mut Site<'_>) -> Result<Shared, BuildError>;
+
+/// Where the field of a function comes from.
+#[derive(Clone, Copy)]
+pub enum Gives {
+    /// It is made of the function's fields.
+    Made(Build),
+    /// It is an operand, read in a way of its own; the function's field must be the plain name of an operand.
+    Read(Reading),
+}
+
+impl Function {
+    /// Whether its field must be the plain name of an operand.
+    pub fn takes_a_name(&self) -> bool {
+        matches!(self.gives, Gives::Read(_))
+    }
+}
+
+/// Functions are told apart by their names.
+impl PartialEq for Function {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Function {}
+
+impl fmt::Debug for Function {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Function").field(&self.name).finish()
+    }
 }
 
 /// An argument as it was typed.
@@ -238,7 +300,7 @@ impl<A> Node<A> {
             NodeKind::Name { operand, .. } => return Ok(Expression::Operand(*operand)),
             NodeKind::Call(call) => call,
         };
-        let other = || LanguageError::NotBoolean { at: self.span.start, function: call.function };
+        let other = || LanguageError::NotBoolean { at: self.span.start, function: call.function.to_string() };
         let join = call.function.boolean.ok_or_else(other)?;
         let parts = call.fields.iter().map(Self::boolean).collect::<Result<Vec<_>, _>>()?;
         parts.into_iter().reduce(join).ok_or_else(other)
