@@ -7,7 +7,7 @@ use super::{assert_empty, folder, names_in, run_in};
 
 fn volume(folder: &TempDir, line: &str) -> f64 {
     let report = run_in(folder, &format!("{line} --json")).exits(0).json();
-    report["result"]["output"]["validity"]["volume"].as_f64().expect("a volume")
+    report["result"]["frames"][0]["output"]["validity"]["volume"].as_f64().expect("a volume")
 }
 
 #[test]

@@ -29,7 +29,7 @@ fn the_repaired_file_is_the_same_by_either_processor() {
         let (cpu, cpu_report) = repaired(&input, "cpu", folder.path());
         let (gpu, gpu_report) = repaired(&input, "gpu", folder.path());
         assert!(cpu == gpu, "{name} differs");
-        let by = |report: &serde_json::Value| report["pipeline"]["ldi"]["made_by"].clone();
+        let by = |report: &serde_json::Value| report["result"]["pipeline"]["ldi"]["made_by"].clone();
         assert_eq!(by(&cpu_report)["backend"], "cpu");
         assert_eq!(by(&gpu_report)["backend"], "gpu");
         assert_eq!(gpu_report["options"]["backend"], "gpu");
@@ -42,8 +42,8 @@ fn the_repaired_file_is_the_same_by_either_processor() {
 fn small_jobs_stay_on_the_main_processor_by_default() {
     let folder = folder();
     let (_, report) = repaired(&sample("monkey_saddle.off"), "auto", folder.path());
-    assert_eq!(report["pipeline"]["ldi"]["made_by"]["backend"], "cpu");
-    assert_eq!(report["pipeline"]["ldi"]["made_by"]["fallback"], serde_json::Value::Null);
+    assert_eq!(report["result"]["pipeline"]["ldi"]["made_by"]["backend"], "cpu");
+    assert_eq!(report["result"]["pipeline"]["ldi"]["made_by"]["fallback"], serde_json::Value::Null);
 }
 
 #[test]
@@ -53,8 +53,8 @@ fn devices_lists_the_adapters_in_words_and_as_json() {
     }
     let report = run(&["devices", "--json"]).exits(0).json();
     assert_eq!(report["verb"], "devices");
-    let adapters = report["devices"]["adapters"].as_array().expect("a list");
-    let taken = report["devices"]["gpu"].as_str().expect("an adapter is taken");
+    let adapters = report["result"]["devices"]["adapters"].as_array().expect("a list");
+    let taken = report["result"]["devices"]["gpu"].as_str().expect("an adapter is taken");
     assert!(adapters.iter().any(|adapter| adapter["name"] == taken && adapter["scatter"] == true));
     let words = run(&["devices"]).exits(0).text();
     for word in [taken, "--backend auto", "--backend gpu", "pixels a side"] {

@@ -149,7 +149,9 @@ fn prisms_give_the_exact_field() {
     let header = 128 / 4;
     let apart = exact[header..].iter().zip(&prism[header..]).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     assert!(exact.len() == prism.len() && apart < 1e-3, "{apart}");
-    run_in(&folder, "sdf testdata/open_cube.off -o OUT/a.npy --method prism").exits(2).says(&["--method prism needs"]);
+    run_in(&folder, "sdf testdata/open_cube.off -o OUT/a.npy --method prism")
+        .exits(2)
+        .says(&["a field by prisms needs a closed, oriented surface"]);
     run_in(&folder, "sdf testdata/torus.ply -o OUT/a.npy --method prism --sign votes").exits(2).says(&["--sign"]);
 }
 

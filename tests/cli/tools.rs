@@ -261,7 +261,7 @@ fn hollow_refuses_with_words() {
     let folder = folder();
     let line = "hollow testdata/inside_out_cube.stl -o OUT/h.off --resolution 64";
     run_in(&folder, &format!("{line} --wall 4.9")).exits(4).says(&["nothing would be hollow"]);
-    run_in(&folder, &format!("{line} --wall 0.2")).exits(4).says(&["need a voxel of at most"]);
+    run_in(&folder, &format!("{line} --wall 0.2")).exits(2).says(&["need a voxel of at most"]);
     run_in(&folder, &format!("{line} --wall 1 --drain 2")).exits(2).says(&["3mm@10,0,-5"]);
     run_in(&folder, line).exits(2).says(&["--wall"]);
     assert_empty(&folder);

@@ -31,7 +31,7 @@ pub use build::{build, shape_extent};
 pub use error::LanguageError;
 pub use functions::{FUNCTIONS, by_name};
 pub use help::{help, markdown};
-pub use site::{BuildError, Operands, Site};
+pub use site::{BuildError, MakeLattice, Operands, Site};
 pub use table::{Axis, Kind, List, Parameter, Presence, Preset, Reading};
 pub use tree::{Argument, Build, Call, Function, Gives, Join, Node, NodeKind, Place, Quantity, Span, Typed, Value};
 

@@ -61,12 +61,15 @@ pub enum BuildError {
     },
 }
 
+/// Makes the lattice around a box with a spacing, model units; without one, with that of the run. Or says why there is none.
+pub type MakeLattice<'a> = dyn Fn(&Bounds, Option<f64>) -> Result<Lattice, String> + 'a;
+
 /// What the functions of an expression are made with, besides their fields.
 pub struct Site<'a> {
     /// The box around all operands, and around the bodies that were made before; model units.
     pub parts: Option<Bounds>,
-    /// The lattice around a box, with this spacing (model units) or with that of the run; or why there is none, in a sentence.
-    pub lattice: &'a dyn Fn(&Bounds, Option<f64>) -> std::result::Result<Lattice, String>,
+    /// Makes lattices for what has to be sampled.
+    pub lattice: &'a MakeLattice<'a>,
     /// Lattices take no more bytes than this.
     pub max_memory: Option<u64>,
     /// Progress and cancellation.
