@@ -9,7 +9,7 @@ use crate::lattice::Lattice;
 use crate::mesh::Bounds;
 use crate::progress::{Progress, Stopped};
 
-/// The operands as fields, each read in the ways that the tree asks for: see [`Node::readings`].
+/// The operands as fields, each read in the ways that the tree asks for: see [`Node::readings`](super::Node::readings).
 pub type Operands = BTreeMap<(usize, Reading), Shared>;
 
 /// Why a tree does not become a field.
