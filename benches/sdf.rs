@@ -16,7 +16,13 @@ fn robust_field(bencher: Bencher<'_, '_>, resolution: u32) {
     let ready = common::ready(common::torus(256, true), resolution);
     let votes = ready.votes();
     bencher.bench(|| {
-        robust(&ready.spans, &ready.planes, (&votes, &ready.lattice), &RobustOptions::default(), &Progress::none())
+        robust(
+            &ready.survey.spans,
+            &ready.planes,
+            (&votes, &ready.survey.lattice),
+            &RobustOptions::default(),
+            &Progress::none(),
+        )
     });
 }
 
@@ -24,9 +30,9 @@ fn robust_field(bencher: Bencher<'_, '_>, resolution: u32) {
 fn march_to_8(bencher: Bencher<'_, '_>, resolution: u32) {
     let ready = common::ready(common::torus(256, false), resolution);
     let near = robust(
-        &ready.spans,
+        &ready.survey.spans,
         &ready.planes,
-        (&ready.votes(), &ready.lattice),
+        (&ready.votes(), &ready.survey.lattice),
         &RobustOptions::default(),
         &Progress::none(),
     );
@@ -38,5 +44,7 @@ fn march_to_8(bencher: Bencher<'_, '_>, resolution: u32) {
 fn exact_within_8(bencher: Bencher<'_, '_>, resolution: u32) {
     let ready = common::ready(common::torus(256, false), resolution);
     let options = ExactOptions { band: Band::Within(8.0), max_memory: None };
-    bencher.bench(|| exact(&ready.mesh, &ready.lattice, Sign::Pseudonormal, &options, &Progress::none()));
+    bencher.bench(|| {
+        exact(&ready.survey.soup.mesh, &ready.survey.lattice, Sign::Pseudonormal, &options, &Progress::none())
+    });
 }

@@ -6,7 +6,6 @@ use divan::Bencher;
 use glam::{DVec3, IVec3};
 use meshwright::ldi::Expression;
 use meshwright::progress::Progress;
-use meshwright::vote::Winding;
 
 fn main() {
     divan::main();
@@ -29,9 +28,9 @@ fn with_holes(bencher: Bencher<'_, '_>, resolution: u32) {
 #[divan::bench(args = [200, 2000, 20000], sample_count = 10)]
 fn lids(bencher: Bencher<'_, '_>, rim: u32) {
     let ready = common::ready(common::open_tube(rim), 80);
-    let winding = Winding::new(&ready.mesh, &ready.operands, &ready.lattice, &Progress::none());
-    let dims = ready.lattice.dims;
-    let top = ready.lattice.to_lattice(DVec3::splat(1.0)).z.floor() as i32;
+    let (winding, lattice) = (ready.survey.winding(&Progress::none()), ready.survey.lattice);
+    let dims = lattice.dims;
+    let top = lattice.to_lattice(DVec3::splat(1.0)).z.floor() as i32;
     let edges = (0..dims.y).flat_map(|y| (0..dims.x).map(move |x| IVec3::new(x, y, top)));
     let crossing = |v: IVec3| winding.crossing(v, v + IVec3::Z, &Expression::Operand(0)).expect("nobody stops it");
     let edges: Vec<IVec3> = edges.filter(|&v| crossing(v).is_some()).collect();

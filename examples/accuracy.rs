@@ -13,12 +13,12 @@ use std::path::Path;
 
 use glam::{DVec3, IVec3};
 use meshwright::lattice::{BRICK, Grid, Lattice, voxel_in_brick};
-use meshwright::ldi::{Expression, Operands, ldis, spans};
-use meshwright::mesh::{Plane, TriMesh};
+use meshwright::mesh::TriMesh;
 use meshwright::pipeline::{Options, VoxelSize, repair};
 use meshwright::progress::{Progress, Stage};
 use meshwright::sdf::{RobustOptions, Trust, robust};
-use meshwright::vote::{Jury, VoteRule, Winding, WindingTree, vote_near_surface};
+use meshwright::survey::Survey;
+use meshwright::vote::{VoteRule, WindingTree};
 use rayon::prelude::*;
 
 const RESOLUTION: u32 = 256;
@@ -75,7 +75,6 @@ fn table_1(name: &str, mesh: &TriMesh) -> Result<(), Box<dyn Error>> {
 struct Model {
     mesh: TriMesh,
     lattice: Lattice,
-    operands: Operands,
     tree: WindingTree,
 }
 
@@ -84,24 +83,20 @@ impl Model {
     fn new(mesh: &TriMesh) -> Result<Self, Box<dyn Error>> {
         let bounds = mesh.bounds().ok_or("no triangles")?;
         let lattice = Lattice::around(&bounds, bounds.size().max_element() / RESOLUTION as f64);
-        let operands = Operands::new([mesh.triangles.len()]);
         let mut own = mesh.clone();
         own.positions.iter_mut().for_each(|p| *p = lattice.to_lattice(*p));
         let tree = WindingTree::new(&own, 0..own.triangles.len(), &Progress::none())?;
         let lattice = Lattice { origin: DVec3::ZERO, h: 1.0, dims: lattice.dims };
-        Ok(Self { mesh: own, lattice, operands, tree })
+        Ok(Self { mesh: own, lattice, tree })
     }
 
     fn field(&self, options: &RobustOptions) -> Grid<f32> {
-        let expression = Expression::Operand(0);
-        let layers = ldis(&self.mesh, &self.lattice, 1, &Progress::none()).expect("nobody stops it");
-        let spans: Vec<_> = layers.into_iter().map(|layers| spans(layers, &self.operands, &expression)).collect();
-        let winding = Winding::new(&self.mesh, &self.operands, &self.lattice, &Progress::none());
-        let rule = VoteRule::default();
-        let jury = Jury { spans: &spans, operands: &self.operands, expression: &expression, rule, winding: &winding };
-        let votes = vote_near_surface(&jury, &Progress::none()).expect("nobody stops it");
-        let planes: Vec<Plane> = (0..self.mesh.triangles.len()).map(|t| Plane::through(self.mesh.corners(t))).collect();
-        robust(&spans, &planes, (&votes, &self.lattice), options, &Progress::none()).expect("nobody stops it").grid
+        let survey = Survey::of_mesh(&self.mesh, &self.lattice, &Progress::none()).expect("nobody stops it");
+        let winding = survey.winding(&Progress::none());
+        let votes = survey.votes(VoteRule::default(), &winding, &Progress::none()).expect("nobody stops it");
+        robust(&survey.spans, &survey.planes(), (&votes, &self.lattice), options, &Progress::none())
+            .expect("nobody stops it")
+            .grid
     }
 
     fn table_2(&self, name: &str, field: &str, options: &RobustOptions) {

@@ -5,12 +5,13 @@ use std::time::Instant;
 
 use meshwright::gpu::{self, Device, GpuMethod, GpuOptions, Wanted, ldis};
 use meshwright::lattice::{BRICK_VOXELS, Lattice};
-use meshwright::ldi::{self, Crossed, Expression, Hit, Layers, Operands, Spans, assemble, snap};
+use meshwright::ldi::{self, Crossed, Hit, Layers, assemble, snap};
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
 use meshwright::sdf::exact::{Band, ExactOptions};
 use meshwright::sdf::prism::{Prisms, Table, prism};
-use meshwright::vote::{Jury, VoteRule, Votes, Winding, vote_near_surface};
+use meshwright::survey::Survey;
+use meshwright::vote::{VoteRule, Votes};
 use rayon::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -100,13 +101,9 @@ fn stages(mesh: &TriMesh, lattice: &Lattice, layers: Vec<Layers>) -> Result<(), 
     })?;
     let crossings: usize = layers.iter().map(|layers| layers.hits.len()).sum();
     let rays: usize = layers.iter().map(Layers::ray_count).sum();
-    let operands = Operands::new([mesh.triangles.len()]);
-    let expression = Expression::Operand(0);
-    let spans: Vec<Spans> = layers.into_iter().map(|layers| ldi::spans(layers, &operands, &expression)).collect();
-    let winding = Winding::new(mesh, &operands, lattice, &Progress::none());
-    let rule = VoteRule::default();
-    let jury = Jury { spans: &spans, operands: &operands, expression: &expression, rule, winding: &winding };
-    let bricks = vote_near_surface(&jury, &Progress::none())?.bricks.active().len();
+    let survey = Survey::of_mesh(mesh, lattice, &Progress::none())?;
+    let winding = survey.winding(&Progress::none());
+    let bricks = survey.votes(VoteRule::default(), &winding, &Progress::none())?.bricks.active().len();
     let mb = |count: usize, size: usize| (count * size) as f64 * 1e-6;
     println!(
         "  depths and sorting {time:.0} ms; LDIs {:.1} MB, {bricks} bricks: votes {:.1} MB, field {:.1} MB",

@@ -4,10 +4,11 @@
 
 use glam::DVec3;
 use meshwright::lattice::{Grid, Lattice};
-use meshwright::ldi::{Expression, Layers, Operands, Spans, ldis, spans};
+use meshwright::ldi::{Layers, ldis};
 use meshwright::mesh::{Plane, TriMesh};
 use meshwright::progress::Progress;
-use meshwright::vote::{Jury, VoteRule, Votes, Winding, vote_near_surface};
+use meshwright::survey::Survey;
+use meshwright::vote::{VoteRule, Votes};
 
 /// A bumpy torus of 2 × `around` × `around / 2` triangles; with `holes`, every 97th is missing.
 pub fn torus(around: u32, holes: bool) -> TriMesh {
@@ -53,10 +54,7 @@ pub fn open_tube(sides: u32) -> TriMesh {
 
 /// A mesh with all that comes before its vote.
 pub struct Ready {
-    pub mesh: TriMesh,
-    pub lattice: Lattice,
-    pub operands: Operands,
-    pub spans: Vec<Spans>,
+    pub survey: Survey,
     pub planes: Vec<Plane>,
 }
 
@@ -67,21 +65,14 @@ pub fn layers(mesh: &TriMesh, lattice: &Lattice) -> Vec<Layers> {
 pub fn ready(mesh: TriMesh, resolution: u32) -> Ready {
     let bounds = mesh.bounds().expect("triangles");
     let lattice = Lattice::around(&bounds, bounds.size().max_element() / resolution as f64);
-    let operands = Operands::new([mesh.triangles.len()]);
-    let cut = |layers| spans(layers, &operands, &Expression::Operand(0));
-    let spans = layers(&mesh, &lattice).into_iter().map(cut).collect();
-    let corners = |t| mesh.corners(t).map(|p| lattice.to_lattice(p));
-    let planes = (0..mesh.triangles.len()).map(|t| Plane::through(corners(t))).collect();
-    Ready { mesh, lattice, operands, spans, planes }
+    let survey = Survey::of_mesh(&mesh, &lattice, &Progress::none()).expect("nobody stops it");
+    let planes = survey.planes();
+    Ready { survey, planes }
 }
 
 impl Ready {
     pub fn votes(&self) -> Grid<Votes> {
-        let winding = Winding::new(&self.mesh, &self.operands, &self.lattice, &Progress::none());
-        let expression = Expression::Operand(0);
-        let rule = VoteRule::default();
-        let jury =
-            Jury { spans: &self.spans, operands: &self.operands, expression: &expression, rule, winding: &winding };
-        vote_near_surface(&jury, &Progress::none()).expect("nobody stops it")
+        let winding = self.survey.winding(&Progress::none());
+        self.survey.votes(VoteRule::default(), &winding, &Progress::none()).expect("nobody stops it")
     }
 }

@@ -11,6 +11,9 @@ const UNSEEN: u32 = u32::MAX;
 pub struct PatchId(u32);
 
 impl PatchId {
+    /// The first patch.
+    pub const FIRST: Self = Self(0);
+
     /// The place of the patch among all patches.
     #[inline]
     pub fn index(self) -> usize {

@@ -17,7 +17,8 @@ use rayon::prelude::*;
 
 use crate::lattice::{Grid, Lattice};
 use crate::ldi::{Evidence, Expression, Lengths, Spans, spans, widths};
-use crate::mesh::Plane;
+use crate::mesh::{Plane, TriMesh};
+use crate::orient::OrientMode;
 use crate::progress::{Progress, Stopped};
 use crate::vote::{Jury, VoteRule, Votes, Winding, vote_near_surface};
 
@@ -47,6 +48,12 @@ impl Survey {
         let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
         evidence.add(&spans);
         Ok(Self { soup, lattice, expression: expression.clone(), spans, evidence, count })
+    }
+
+    /// Of one mesh that is taken as it is, on the main processor: for looking at the stages by themselves.
+    pub fn of_mesh(mesh: &TriMesh, lattice: &Lattice, progress: &Progress) -> Result<Self, Stopped> {
+        let cast = Cast::on_cpu(Soup::as_it_is(mesh.clone()), lattice, OrientMode::Keep, progress)?;
+        Self::of(cast, &Expression::Operand(0), progress)
     }
 
     /// The generalised winding numbers of the operands; its trees are made when they are first needed.

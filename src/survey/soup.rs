@@ -80,6 +80,19 @@ impl Soup {
         Ok(soup)
     }
 
+    /// One operand that is taken as it is: its triangles keep their numbers and sides.
+    pub fn as_it_is(mesh: TriMesh) -> Self {
+        let count = mesh.triangles.len();
+        Self {
+            operands: Operands::new([count]),
+            patch_of: vec![PatchId::FIRST; count],
+            patch_count: usize::from(count > 0),
+            reports: vec![OrientReport::default()],
+            source: (0..count as u32).collect(),
+            mesh,
+        }
+    }
+
     /// Lets the rays decide the side of each patch, and turns patches over in the crossings and in the soup.
     pub(super) fn turn_patches(
         &mut self,

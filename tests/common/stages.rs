@@ -1,10 +1,11 @@
 //! The first stages, for tests of the later ones.
 
 use meshwright::lattice::{Grid, Lattice};
-use meshwright::ldi::{Expression, Operands, Spans, ldis, spans};
+use meshwright::ldi::Spans;
 use meshwright::mesh::{Plane, TriMesh};
 use meshwright::progress::Progress;
-use meshwright::vote::{Jury, VoteRule, Votes, Winding, vote_near_surface};
+use meshwright::survey::Survey;
+use meshwright::vote::{Jury, VoteRule, Votes};
 
 /// Lattice with `resolution` voxels along the longest side.
 pub fn lattice_of(mesh: &TriMesh, resolution: u32) -> Lattice {
@@ -12,28 +13,29 @@ pub fn lattice_of(mesh: &TriMesh, resolution: u32) -> Lattice {
     Lattice::around(&bounds, bounds.size().max_element() / resolution as f64)
 }
 
+fn survey(mesh: &TriMesh, lattice: &Lattice) -> Survey {
+    Survey::of_mesh(mesh, lattice, &Progress::none()).expect("not stopped")
+}
+
 /// The spans of one operand, in all 13 directions.
 pub fn spans_of(mesh: &TriMesh, lattice: &Lattice) -> Vec<Spans> {
-    let operands = Operands::new([mesh.triangles.len()]);
-    let layers = ldis(mesh, lattice, 1, &Progress::none()).expect("not stopped");
-    layers.into_iter().map(|layers| spans(layers, &operands, &Expression::Operand(0))).collect()
+    survey(mesh, lattice).spans
 }
 
 /// Calls `judge` with the jury of one operand.
 pub fn with_jury<T>(mesh: &TriMesh, lattice: &Lattice, rule: VoteRule, judge: impl FnOnce(&Jury<'_>) -> T) -> T {
-    let operands = Operands::new([mesh.triangles.len()]);
-    let spans = spans_of(mesh, lattice);
-    let winding = Winding::new(mesh, &operands, lattice, &Progress::none());
-    let expression = Expression::Operand(0);
-    judge(&Jury { spans: &spans, operands: &operands, expression: &expression, rule, winding: &winding })
+    let survey = survey(mesh, lattice);
+    let winding = survey.winding(&Progress::none());
+    judge(&survey.jury(rule, &winding))
 }
 
 /// The votes near the surface of one operand.
 pub fn votes_of(mesh: &TriMesh, lattice: &Lattice, rule: VoteRule) -> Grid<Votes> {
-    with_jury(mesh, lattice, rule, |jury| vote_near_surface(jury, &Progress::none()).expect("not stopped"))
+    let survey = survey(mesh, lattice);
+    survey.votes(rule, &survey.winding(&Progress::none()), &Progress::none()).expect("not stopped")
 }
 
 /// The planes of a mesh's triangles, lattice coordinates.
 pub fn planes_of(mesh: &TriMesh, lattice: &Lattice) -> Vec<Plane> {
-    (0..mesh.triangles.len()).map(|t| Plane::through(mesh.corners(t).map(|p| lattice.to_lattice(p)))).collect()
+    survey(mesh, lattice).planes()
 }
