@@ -85,3 +85,8 @@ fn boolean<'a>(
     let outcome = pipeline::boolean(operands, &expression, &options.into(), &Progress::none())?;
     Ok(outcome.solid)
 }
+
+/// The programs of the README.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -20,8 +20,8 @@ use super::{solid, summary};
 use crate::compare::{CompareOptions, Comparison, compare};
 use crate::decimate::{DecimateError, DecimateOptions, DecimateReport, Decimated, decimate};
 use crate::fit::rounded;
-use crate::io::{Format, Paint, Unit};
-use crate::mesh::{Bounds, TriMesh};
+use crate::io::{Format, Loaded, Paint, Unit};
+use crate::mesh::{Bounds, Solid, SolidError, TriMesh};
 use crate::pipeline;
 use crate::progress::Stage;
 
@@ -87,23 +87,33 @@ pub fn run(args: &DecimateArgs, session: &Session, report: &mut RunReport) -> Re
     });
     let made = report.timed(Stage::Decimate, |_| {
         session.progress.stage(Stage::Decimate)?;
-        Ok::<_, Failure>(decimate(&input.loaded.mesh, &options, &session.progress))
+        let Loaded { mesh, colours, texture, .. } = &input.loaded;
+        let classes = pipeline::classes_of(mesh, colours.as_ref(), texture.as_ref());
+        Ok::<_, Failure>(match Solid::check(mesh.clone(), &session.progress) {
+            Ok(solid) => {
+                let made = decimate(&solid, &classes, &options, &session.progress);
+                made.map(|made| (made, solid.validity().clone())).map_err(|error| failure(error, &input, moved))
+            }
+            Err(SolidError::NotSolid(what)) => Err(no_solid(&what.validity.problems().join(" "), &input, moved)),
+            Err(error) => Err(error.into()),
+        })
     })?;
-    let Decimated { mesh, origins, before, report: done } = made.map_err(|error| failure(error, &input, moved))?;
+    let (Decimated { solid: made, origins, report: done }, before) = made?;
+    let mesh = made.mesh();
     report.inputs[0].validity = Some(before);
     let colours = input.loaded.colours.as_ref();
-    let colours = colours.map(|colours| pipeline::carry_to_simpler(&mesh, &origins, &input.loaded.mesh, colours));
+    let colours = colours.map(|colours| pipeline::carry_to_simpler(mesh, &origins, &input.loaded.mesh, colours));
     let comparison = report.timed(Stage::Compare, |_| {
         let options = CompareOptions { samples: SAMPLES, edge_tolerance: None };
-        compare(&input.loaded.mesh, &mesh, &options, &session.progress).map(Some)
+        compare(&input.loaded.mesh, mesh, &options, &session.progress).map(Some)
     })?;
     let texture = input.loaded.texture.as_ref();
     let texture =
-        texture.and_then(|texture| pipeline::carry_texture_to_simpler(&mesh, &origins, &input.loaded.mesh, texture));
+        texture.and_then(|texture| pipeline::carry_texture_to_simpler(mesh, &origins, &input.loaded.mesh, texture));
     let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
     report.result =
         Some(RunResult::Decimation { decimate: done.clone(), comparison: comparison.clone(), output: None });
-    let written = solid::write(&mesh, paint, &target, session, report)?;
+    let written = solid::write(mesh, paint, &target, session, report)?;
     report.written(written);
     let missed = !done.reached && options.max_deviation.is_none();
     if !done.reached {
@@ -150,7 +160,6 @@ fn options(args: &DecimateArgs, input: &Input, unit: Option<Unit>, format: Forma
     Ok(DecimateOptions {
         triangles: args.triangles.map(|count| count as usize).or(share),
         max_deviation,
-        classes: pipeline::classes_of(&input.loaded.mesh, input.loaded.colours.as_ref(), input.loaded.texture.as_ref()),
         single: format.is_single(),
     })
 }
@@ -160,8 +169,14 @@ fn failure(error: DecimateError, input: &Input, moved: f64) -> Failure {
         DecimateError::Stopped(stopped) => return stopped.into(),
         DecimateError::Deviation(_) => return Failure::usage(error.to_string()),
         DecimateError::NotManifold(error) => error.to_string(),
-        DecimateError::Invalid(state) => state.problems().join(" ").trim_end_matches('.').to_owned(),
+        DecimateError::Invalid(state) => state.problems().join(" "),
     };
+    no_solid(&problems, input, moved)
+}
+
+/// The failure for what is no solid.
+fn no_solid(problems: &str, input: &Input, moved: f64) -> Failure {
+    let problems = problems.trim_end_matches('.');
     let failure =
         Failure::input(format!("{} is no valid solid, and only these are decimated: {problems}", input.label));
     failure.hint(match moved > 0.0 {

@@ -20,7 +20,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use crate::fit::rounded;
-use crate::mesh::{NotManifold, TriMesh, ValidateOptions, Validity, validate};
+use crate::mesh::{NotManifold, Solid, SolidError, TriMesh, ValidateOptions, Validity, validate};
 use crate::progress::{Progress, Stopped};
 use collapse::Limits;
 use guard::Zone;
@@ -28,15 +28,13 @@ use work::Work;
 
 /// Options of [`decimate`], which goes on until one of the limits is reached; without any limit it goes on as long as the
 /// solid stays valid.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct DecimateOptions {
     /// Stop when there are no more triangles than this.
     pub triangles: Option<usize>,
     /// How far the surface may move, model units: no point of the old surface is farther from the new one, nor of the new from the
     /// old.
     pub max_deviation: Option<f64>,
-    /// A number for each triangle, or nothing: edges between different numbers (colours, for instance) are kept as sharp ones are.
-    pub classes: Vec<u32>,
     /// Whether all coordinates, those of the input as well, are `f32` ones, for formats that hold no more.
     pub single: bool,
 }
@@ -62,12 +60,10 @@ pub struct DecimateReport {
 /// A decimated solid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decimated {
-    /// The solid, valid as the input was.
-    pub mesh: TriMesh,
+    /// The solid of fewer triangles.
+    pub solid: Solid,
     /// For each triangle of the decimated solid the triangle of the input that it grew out of.
     pub origins: Vec<u32>,
-    /// The state of the input.
-    pub before: Validity,
     /// The account of what was done.
     pub report: DecimateReport,
 }
@@ -78,7 +74,7 @@ pub enum DecimateError {
     /// Interrupted, or the deadline passed.
     #[error(transparent)]
     Stopped(#[from] Stopped),
-    /// The input is no valid solid.
+    /// Vertices of the input lie at one place, and the format that the result is for takes them for one: it would hold no valid solid.
     #[error("only a valid solid can be decimated, and this is none: {}", .0.problems().join(" "))]
     Invalid(Box<Validity>),
     /// The input is no closed manifold.
@@ -92,19 +88,29 @@ pub enum DecimateError {
 /// Times it is done again before all of the surface is looked at.
 const MOST_REPEATS: usize = 6;
 
-/// Takes triangles away from a valid solid so that it stays a valid solid: closed, oriented, a manifold, without triangles that
-/// meet, with as many bodies and tunnels as before. Vertices that stay keep their coordinates.
+/// Takes triangles away from a solid so that it stays one, with as many bodies and tunnels as before. Vertices that stay keep their
+/// coordinates. `classes`: a number for each triangle, or nothing; edges between different numbers (colours, for instance) are kept as sharp ones
+/// are.
 ///
 /// # Errors
-/// [`DecimateError::Invalid`] for anything else than a valid solid.
-pub fn decimate(mesh: &TriMesh, options: &DecimateOptions, progress: &Progress) -> Result<Decimated, DecimateError> {
+/// See [`DecimateError`].
+pub fn decimate(
+    solid: &Solid,
+    classes: &[u32],
+    options: &DecimateOptions,
+    progress: &Progress,
+) -> Result<Decimated, DecimateError> {
+    let mesh = solid.mesh();
     if let Some(length) = options.max_deviation.filter(|length| !(length.is_finite() && *length > 0.0)) {
         return Err(DecimateError::Deviation(length));
     }
     let look = ValidateOptions { self_intersections: true, weld: options.single };
-    let before = validate(mesh, &look, progress)?;
-    if !before.is_valid() {
-        return Err(DecimateError::Invalid(Box::new(before)));
+    let before = solid.validity();
+    if options.single {
+        let welded = validate(mesh, &look, progress)?;
+        if !welded.is_valid() {
+            return Err(DecimateError::Invalid(Box::new(welded)));
+        }
     }
     let scale = scale_of(mesh);
     let limits = Limits {
@@ -121,28 +127,29 @@ pub fn decimate(mesh: &TriMesh, options: &DecimateOptions, progress: &Progress) 
         max_deviation: options.max_deviation,
         repeats: 0,
     };
-    let as_it_is = |report: DecimateReport, before: Validity| Decimated {
-        mesh: mesh.clone(),
-        origins: (0..count as u32).collect(),
-        before,
-        report,
-    };
+    let as_it_is =
+        |report: DecimateReport| Decimated { solid: solid.clone(), origins: (0..count as u32).collect(), report };
     if report.reached && options.triangles.is_some() {
-        return Ok(as_it_is(report, before));
+        return Ok(as_it_is(report));
     }
-    let mut zone = Zone::nothing(cell_size(&before, options, scale));
+    let mut zone = Zone::nothing(cell_size(before, options, scale));
     loop {
-        let mut work = Work::new(mesh, scale, &options.classes)?;
+        let mut work = Work::new(mesh, scale, classes)?;
         collapse::run(&mut work, &zone, &limits, progress)?;
         let (made, origins) = work.finish(mesh, scale);
         let state = validate(&made, &look, progress)?;
         if state.is_valid() {
             report.after = made.triangles.len();
             report.reached = options.triangles.is_none_or(|asked| report.after <= asked);
-            return Ok(Decimated { mesh: made, origins, before, report });
+            match Solid::check(made, progress) {
+                Ok(solid) => return Ok(Decimated { solid, origins, report }),
+                Err(SolidError::Stopped(stopped)) => return Err(stopped.into()),
+                // Only vertices that were taken for one kept it together.
+                Err(_) => return Ok(as_it_is(DecimateReport { after: count, reached: false, ..report })),
+            }
         }
         if zone.is_everything() {
-            return Ok(as_it_is(report, before));
+            return Ok(as_it_is(report));
         }
         report.repeats += 1;
         if report.repeats > MOST_REPEATS || state.self_intersecting_triangles == Some(0) {

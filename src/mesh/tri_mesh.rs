@@ -48,8 +48,8 @@ impl Bounds {
 /// given a mesh that fails the check, they may panic.
 ///
 /// A coordinate that is NaN or infinite is no error here. Readers leave out the faces at such vertices, with a warning;
-/// [`validate`](crate::mesh::validate) finds that the mesh has no volume and so bounds no solid; the pipelines leave the triangles there out or end
-/// with an error, and never make a wrong solid of them; the writers refuse the mesh and name the vertex. Who makes meshes by hand should drop such vertices,
+/// [`validate`](crate::mesh::validate) finds that the mesh has no volume and so bounds no solid; [`repair`](crate::pipeline::repair) and the booleans end with an error that
+/// names the triangle; the other pipelines never make a wrong solid of them; the writers refuse the mesh and name the vertex. Who makes meshes by hand should drop such vertices,
 /// as the readers do.
 ///
 /// ```
@@ -109,6 +109,11 @@ impl TriMesh {
             Some(IndexError { triangle, index, vertices })
         });
         first.map_or(Ok(()), Err)
+    }
+
+    /// The first triangle with a corner that is NaN or infinite.
+    pub fn first_not_finite(&self) -> Option<usize> {
+        (0..self.triangles.len()).find(|&t| !self.corners(t).iter().all(|p| p.is_finite()))
     }
 
     /// The corners of triangle `triangle`.

@@ -65,7 +65,7 @@ impl Advice for BooleanError {
             Self::Stopped(stopped) => Trouble::Stopped(*stopped),
             Self::Empty { operand } => Trouble::Empty { operand: *operand },
             Self::MissingOperand { .. } => Trouble::Call,
-            Self::Index { .. } => Trouble::Index,
+            Self::Index { .. } | Self::NotFinite { .. } => Trouble::Index,
             Self::Lattice(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
             Self::Nothing(_) => Trouble::Input,

@@ -41,6 +41,9 @@ pub fn boolean<'a>(
     }
     for (operand, given) in operands.iter().enumerate() {
         given.mesh.check().map_err(|error| BooleanError::Index { operand, error })?;
+        if let Some(triangle) = given.mesh.first_not_finite() {
+            return Err(BooleanError::NotFinite { operand, triangle });
+        }
     }
     let ordered = Ordered::new(operands, &expression);
     evaluate(&ordered.operands, &ordered.expression, options, progress)

@@ -72,6 +72,16 @@ pub enum BooleanError {
         /// Which triangle and which vertex.
         error: IndexError,
     },
+    /// A corner of a triangle is NaN or infinite.
+    #[error(
+        "operand {operand}: triangle {triangle} has a corner whose coordinates are no numbers; leave such triangles out, as the readers of files do"
+    )]
+    NotFinite {
+        /// Number of the operand, from 0.
+        operand: usize,
+        /// Number of the first such triangle.
+        triangle: usize,
+    },
     /// The expression names an operand that was not given.
     #[error("the expression names operand {operand}, but only {given} were given")]
     MissingOperand {

@@ -50,6 +50,9 @@ impl<'a> Ordered<'a> {
             BooleanError::Empty { operand } => {
                 BooleanError::Empty { operand: self.given.get(operand).copied().unwrap_or(operand) }
             }
+            BooleanError::NotFinite { operand, triangle } => {
+                BooleanError::NotFinite { operand: self.given.get(operand).copied().unwrap_or(operand), triangle }
+            }
             BooleanError::Index { operand, error } => {
                 BooleanError::Index { operand: self.given.get(operand).copied().unwrap_or(operand), error }
             }

@@ -10,7 +10,7 @@ use meshwright::field::filter::{FilterOptions, Sampling, filtered};
 use meshwright::field::{MeshField, Shared, scattered};
 use meshwright::io::{Colours, Loaded};
 use meshwright::ldi::{Balance, Layers, Operands, balance, ldis};
-use meshwright::mesh::{Bounds, ClosestTree, TriMesh, ValidateOptions, Validity, validate};
+use meshwright::mesh::{Bounds, ClosestTree, Solid, TriMesh, ValidateOptions, Validity, validate};
 use meshwright::progress::Progress;
 use meshwright::sdf::exact::PointSign;
 
@@ -23,7 +23,8 @@ pub fn state(mesh: &TriMesh, weld: bool) -> Validity {
 
 /// The mesh with fewer triangles.
 pub fn decimated(mesh: &TriMesh, options: &DecimateOptions) -> Decimated {
-    decimate(mesh, options, &Progress::none()).expect("a valid solid")
+    let solid = Solid::try_from(mesh.clone()).expect("a valid solid");
+    decimate(&solid, &[], options, &Progress::none()).expect("a valid solid")
 }
 
 /// The options that ask for a number of triangles.
@@ -48,12 +49,12 @@ pub fn stays_valid_when_decimated(name: &str, mesh: &TriMesh) {
             let mesh =
                 TriMesh { positions: mesh.positions.iter().map(round).collect(), triangles: mesh.triangles.clone() };
             let made = decimated(&mesh, &DecimateOptions { single, ..number(asked) });
-            let after = state(&made.mesh, single);
+            let after = state(&made.solid, single);
             assert!(after.is_valid(), "{name} to 1/{share}: {:?}", after.problems());
             assert_eq!((after.bodies, after.genus), (before.bodies, before.genus), "{name} to 1/{share}");
             assert_eq!(made.report.reached, after.triangles <= asked, "{name} to 1/{share}");
             assert!(made.report.reached || share == 60, "{name} to 1/{share}: {}", after.triangles);
-            let exact = made.mesh.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p);
+            let exact = made.solid.positions.iter().all(|p| p.as_vec3().as_dvec3() == *p);
             assert!(exact || !single, "{name}: coordinates are no f32");
         }
     }
@@ -66,11 +67,11 @@ pub fn stays_within_the_deviation(name: &str, mesh: &TriMesh) {
     for share in [1e-4, 1e-3, 1e-2] {
         let options = DecimateOptions { max_deviation: Some(share * diagonal), ..DecimateOptions::default() };
         let made = decimated(mesh, &options);
-        let moved = compared(mesh, &made.mesh).symmetric.expect("areas").max;
+        let moved = compared(mesh, &made.solid).symmetric.expect("areas").max;
         assert!(moved <= share * diagonal, "{name}: moved by {} of {share}", moved / diagonal);
-        assert!(made.mesh.triangles.len() <= last, "{name}: more triangles for more room");
-        assert!(state(&made.mesh, false).is_valid(), "{name}");
-        last = made.mesh.triangles.len();
+        assert!(made.solid.triangles.len() <= last, "{name}: more triangles for more room");
+        assert!(state(&made.solid, false).is_valid(), "{name}");
+        last = made.solid.triangles.len();
     }
     assert!(last < mesh.triangles.len() * 9 / 10, "{name}: {last} triangles left");
 }

@@ -6,7 +6,7 @@ use crate::common::proofs::{
 use crate::common::{read, sample, shapes};
 use glam::DVec3;
 use meshwright::decimate::{DecimateError, DecimateOptions, decimate};
-use meshwright::mesh::TriMesh;
+use meshwright::mesh::{Solid, SolidError, TriMesh};
 use meshwright::progress::Progress;
 
 /// A box whose sides are grids of squares of two triangles.
@@ -48,9 +48,9 @@ fn a_gridded_cube_becomes_twelve_triangles_and_keeps_its_corners_to_the_last_bit
         mesh.positions.iter_mut().for_each(|p| *p = turn * *p);
         for options in [number(12), DecimateOptions { max_deviation: Some(1e-6), ..DecimateOptions::default() }] {
             let made = decimated(&mesh, &options);
-            assert_eq!(made.mesh.triangles.len(), 12, "{options:?}");
-            assert!(made.mesh.positions.iter().all(|p| mesh.positions.contains(p)), "corners moved: {:?}", made.mesh);
-            assert!((state(&made.mesh, false).volume - 1.0).abs() < 1e-9);
+            assert_eq!(made.solid.triangles.len(), 12, "{options:?}");
+            assert!(made.solid.positions.iter().all(|p| mesh.positions.contains(p)), "corners moved: {:?}", made.solid);
+            assert!((state(&made.solid, false).volume - 1.0).abs() < 1e-9);
         }
     }
 }
@@ -89,7 +89,7 @@ fn sharp_edges_stay_where_they_are() {
     // A cube with a wavy top: 12 sharp edges, 4 of them curved.
     let mesh = gridded(24, |p| DVec3::new(p.x, p.y, p.z * (1.0 + 0.1 * (5.0 * p.x).sin() * (4.0 * p.y).cos())));
     let made = decimated(&mesh, &number(mesh.triangles.len() / 10));
-    let found = compared(&mesh, &made.mesh);
+    let found = compared(&mesh, &made.solid);
     assert!(found.sharp.recall > Some(0.99) && found.sharp.precision > Some(0.99), "{:?}", found.sharp);
     assert!(found.symmetric.expect("areas").max < 0.01);
 }
@@ -100,9 +100,10 @@ fn classes_keep_their_borders() {
     // The upper half of everything has another number.
     let upper = |t: usize| u32::from(mesh.corners(t).iter().map(|p| p.z).sum::<f64>() > 1.5);
     let classes: Vec<u32> = (0..mesh.triangles.len()).map(upper).collect();
-    let made = decimated(&mesh, &DecimateOptions { classes: classes.clone(), ..number(60) });
+    let solid = Solid::try_from(mesh.clone()).expect("a solid");
+    let made = decimate(&solid, &classes, &number(60), &Progress::none()).expect("a solid");
     for (t, &origin) in made.origins.iter().enumerate() {
-        let heights = made.mesh.corners(t).map(|p| p.z);
+        let heights = made.solid.corners(t).map(|p| p.z);
         let fits = |z: &f64| if classes[origin as usize] == 1 { *z >= 0.5 - 1e-9 } else { *z <= 0.5 + 1e-9 };
         assert!(heights.iter().all(fits), "a triangle of class {} reaches over: {heights:?}", classes[origin as usize]);
     }
@@ -113,10 +114,10 @@ fn classes_keep_their_borders() {
 fn a_ball_keeps_its_volume_and_stays_round() {
     let mesh = ball(40);
     let made = decimated(&mesh, &number(960));
-    let (before, after) = (state(&mesh, false).volume, state(&made.mesh, false).volume);
+    let (before, after) = (state(&mesh, false).volume, state(&made.solid, false).volume);
     assert!((after / before - 1.0).abs() < 2e-3, "{before} became {after}");
     // 960 triangles inscribed in a ball would be off by 0.4 % in the mean; the best place halves that.
-    let mean = compared(&mesh, &made.mesh).symmetric.expect("areas").mean;
+    let mean = compared(&mesh, &made.solid).symmetric.expect("areas").mean;
     assert!(mean < 2.5e-3, "{mean}");
 }
 
@@ -132,10 +133,10 @@ fn thin_walls_do_not_pass_through_each_other() {
     mesh.append(&inner);
     let before = state(&mesh, false);
     let made = decimated(&mesh, &number(400));
-    let after = state(&made.mesh, false);
+    let after = state(&made.solid, false);
     assert!(after.is_valid(), "{:?}", after.problems());
     assert_eq!((after.bodies, after.genus), (before.bodies, before.genus));
-    assert!(made.mesh.triangles.len() < mesh.triangles.len() / 2, "{}", made.mesh.triangles.len());
+    assert!(made.solid.triangles.len() < mesh.triangles.len() / 2, "{}", made.solid.triangles.len());
     assert!(made.report.repeats > 0, "nothing had met, so nothing was tested");
 }
 
@@ -146,13 +147,13 @@ fn far_from_the_origin_and_in_any_size_the_same_is_done() {
     for scale in [2f64.powi(-60), 2f64.powi(90)] {
         let sized = TriMesh { positions: mesh.positions.iter().map(|p| *p * scale).collect(), ..mesh.clone() };
         let made = decimated(&sized, &number(400));
-        assert_eq!(made.mesh.triangles, plain.mesh.triangles, "at scale {scale}");
+        assert_eq!(made.solid.triangles, plain.solid.triangles, "at scale {scale}");
     }
     let far = DVec3::new(4e6, -3e6, 1e6);
     let moved = TriMesh { positions: mesh.positions.iter().map(|p| *p + far).collect(), ..mesh.clone() };
     let made = decimated(&moved, &number(400));
-    assert!(state(&made.mesh, false).is_valid());
-    assert!((state(&made.mesh, false).volume / state(&mesh, false).volume - 1.0).abs() < 1e-2);
+    assert!(state(&made.solid, false).is_valid());
+    assert!((state(&made.solid, false).volume / state(&mesh, false).volume - 1.0).abs() < 1e-2);
 }
 
 #[test]
@@ -160,7 +161,7 @@ fn the_number_of_threads_does_not_matter() {
     let mesh = shapes::torus(80, 40);
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| decimated(&mesh, &number(700)).mesh)
+        pool.install(|| decimated(&mesh, &number(700)).solid)
     };
     assert_eq!(with(1), with(4));
 }
@@ -174,13 +175,14 @@ fn what_is_no_valid_solid_is_refused() {
     let mut inside_out = cube(4);
     inside_out.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     for mesh in [open, twice, inside_out] {
-        let refused = decimate(&mesh, &number(8), &Progress::none()).expect_err("it is none");
-        assert!(matches!(refused, DecimateError::Invalid(_)), "{refused}");
+        let refused = Solid::try_from(mesh).expect_err("it is none");
+        assert!(matches!(&refused, SolidError::NotSolid(what) if !what.validity.problems().is_empty()), "{refused}");
     }
     for length in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let options = DecimateOptions { max_deviation: Some(length), ..DecimateOptions::default() };
-        assert!(matches!(decimate(&cube(2), &options, &Progress::none()), Err(DecimateError::Deviation(_))));
+        let solid = Solid::try_from(cube(2)).expect("a cube");
+        assert!(matches!(decimate(&solid, &[], &options, &Progress::none()), Err(DecimateError::Deviation(_))));
     }
     let enough = decimated(&cube(2), &number(48));
-    assert!(enough.mesh == cube(2) && enough.report.reached);
+    assert!(enough.solid == cube(2) && enough.report.reached);
 }

@@ -1,24 +1,30 @@
 //! From a mesh to its signed distance over a lattice.
 
+mod error;
+mod options;
+
+pub use error::DistanceError;
+pub use options::{DistanceMethod, DistanceOptions, DistanceSign};
+
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::account::refuse_scattered;
-use super::frame::Frame;
-use super::plan::{BASE_BYTES, Input};
-use super::stages::Stages;
-use super::{LatticeError, LimitError, NothingEnclosed, StageTime, VoxelSize, sizing};
-use crate::backend::{self, Backend, BackendReport, PrismError};
+use crate::backend::{self, BackendReport, PrismError};
 use crate::digits;
 use crate::lattice::{BRICK, DistanceField, Lattice, Slot};
 use crate::ldi::{Expression, MAX_VOXELS};
-use crate::mesh::{IndexError, TriMesh, ValidateOptions, Validity, validate};
-use crate::orient::{OrientMode, OrientReport};
+use crate::mesh::{TriMesh, ValidateOptions, validate};
+use crate::orient::OrientReport;
+use crate::pipeline::account::refuse_scattered;
+use crate::pipeline::frame::Frame;
+use crate::pipeline::plan::{BASE_BYTES, Input};
+use crate::pipeline::stages::Stages;
+use crate::pipeline::{LatticeError, LimitError, StageTime, sizing};
 use crate::progress::{Progress, Stage, Stopped};
-use crate::sdf::exact::{self, Band, ExactError, ExactOptions, Sign};
-use crate::sdf::{self, Levels, LevelsError, RobustOptions, characteristics, levels_memory};
-use crate::survey::{Cast, Soup, SoupError, Survey};
+use crate::sdf::exact::{self, Band, ExactOptions, Sign};
+use crate::sdf::{self, Levels, RobustOptions, characteristics, levels_memory};
+use crate::survey::{Cast, Soup, Survey};
 use crate::vote::{VoteReport, VoteRule, doubts};
 
 /// Bytes per h² of surface and per triangle that are there besides the field, for each way to the sides.
@@ -32,108 +38,6 @@ const MARCHED_BYTES: f64 = 10.5;
 const MARCHED_SECONDS: f64 = 1200e-9;
 /// Seconds per stored voxel for the winding number.
 const WINDING_SECONDS: f64 = 150e-9;
-
-/// How the distance is found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum DistanceMethod {
-    /// To the nearest triangle, exactly.
-    Exact,
-    /// The same by characteristics and scan conversion: for closed, oriented meshes and
-    /// [`DistanceSign::Pseudonormal`] only. A reference to compare with.
-    Characteristics,
-    /// The same by scan conversion of a prism for every triangle, on either processor: for closed, oriented meshes and
-    /// [`DistanceSign::Pseudonormal`] only.
-    Prism,
-    /// The pipelines' own field: smooth where the surface is broken, extended by fast marching.
-    Robust,
-}
-
-/// What tells inside from outside.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "kebab-case")]
-pub enum DistanceSign {
-    /// The pseudonormal at the nearest point of the mesh as it is: for closed, oriented ones.
-    Pseudonormal,
-    /// The votes of the rays, after cleaning and orientation: for soups.
-    Votes,
-    /// The generalised winding number, after cleaning and orientation.
-    Winding,
-    /// The slice contours of the surface in the lattice's planes along z, gaps closed, after cleaning and orientation.
-    Levels,
-}
-
-impl DistanceMethod {
-    /// As people call it.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Exact => "exact distance",
-            Self::Characteristics => "characteristics",
-            Self::Prism => "prisms",
-            Self::Robust => "votes",
-        }
-    }
-
-    /// Whether it is for closed, oriented surfaces only.
-    pub fn is_for_closed(self) -> bool {
-        matches!(self, Self::Characteristics | Self::Prism)
-    }
-}
-
-impl DistanceSign {
-    /// The sign that suits a mesh of this state: pseudonormals where they are exact, votes where the mesh is a soup.
-    pub fn suited(validity: &Validity, method: DistanceMethod) -> Self {
-        let exact = validity.is_valid() && method == DistanceMethod::Exact;
-        if exact || method.is_for_closed() { Self::Pseudonormal } else { Self::Votes }
-    }
-}
-
-/// Options of [`distance`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DistanceOptions {
-    /// Spacing of the lattice.
-    pub voxel: VoxelSize,
-    /// How far from the surface the field is filled, model units; `None`: the whole lattice.
-    pub band: Option<f64>,
-    /// How the distance is found.
-    pub method: DistanceMethod,
-    /// What tells inside from outside; [`DistanceMethod::Robust`] goes by the votes always,
-    /// [`DistanceMethod::Characteristics`] and [`DistanceMethod::Prism`] by pseudonormals.
-    pub sign: DistanceSign,
-    /// Which processor makes the field of prisms; the others are made by the main one.
-    pub backend: Backend,
-    /// Orientation of the input, unless the sign is by pseudonormals.
-    pub orient: OrientMode,
-    /// Upper bound for the working memory, bytes; `None`: no bound.
-    pub max_memory: Option<u64>,
-}
-
-impl DistanceOptions {
-    /// The exact distance over the whole lattice, with votes for the sign: right for any mesh. [`DistanceSign::suited`] chooses what is faster
-    /// where it is right as well.
-    pub fn new(voxel: VoxelSize) -> Self {
-        Self {
-            voxel,
-            band: None,
-            method: DistanceMethod::Exact,
-            sign: DistanceSign::Votes,
-            backend: Backend::default(),
-            orient: OrientMode::Auto,
-            max_memory: None,
-        }
-    }
-
-    /// Whether rays vote.
-    fn votes(&self) -> bool {
-        match self.method {
-            DistanceMethod::Exact => self.sign != DistanceSign::Pseudonormal,
-            DistanceMethod::Characteristics | DistanceMethod::Prism => false,
-            DistanceMethod::Robust => true,
-        }
-    }
-}
 
 /// A field and how it came about.
 #[derive(Debug, Clone)]
@@ -189,51 +93,6 @@ pub struct DistancePlan {
     pub memory: u64,
     /// Estimated seconds on one core of an ordinary machine.
     pub seconds: f64,
-}
-
-/// Why there is no field.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum DistanceError {
-    /// Interrupted, or the deadline passed.
-    #[error(transparent)]
-    Stopped(#[from] Stopped),
-    /// There is no triangle with an area.
-    #[error("there is no triangle with an area")]
-    Empty,
-    /// A triangle refers to a vertex that is not there.
-    #[error(transparent)]
-    Index(#[from] IndexError),
-    /// The method needs a closed, oriented surface, and this is none.
-    #[error("a field by {} needs a closed, oriented surface. {problem}", method.word())]
-    NotClosed {
-        /// The method.
-        method: DistanceMethod,
-        /// What is wrong with the surface, as a sentence.
-        problem: String,
-    },
-    /// The voxel size, or the band, cannot be used with these coordinates.
-    #[error(transparent)]
-    Lattice(#[from] LatticeError),
-    /// More memory would be needed than allowed.
-    #[error(transparent)]
-    Limit(#[from] LimitError),
-    /// The distance could not be found over this lattice.
-    #[error(transparent)]
-    Exact(ExactError),
-    /// There is no memory for the slice contours.
-    #[error(transparent)]
-    Levels(LevelsError),
-    /// The votes find no inside.
-    #[error(transparent)]
-    Nothing(#[from] NothingEnclosed),
-    /// The graphics processor was asked for and cannot do it.
-    #[error("{reason}")]
-    Device {
-        /// One sentence: why.
-        reason: String,
-        /// What to try.
-        hint: String,
-    },
 }
 
 /// What [`distance`] would cost.
@@ -353,34 +212,6 @@ fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOption
         file: (4.0 * all) as u64,
         memory: memory as u64,
         seconds,
-    }
-}
-
-impl From<ExactError> for DistanceError {
-    fn from(error: ExactError) -> Self {
-        match error {
-            ExactError::Stopped(stopped) => Self::Stopped(stopped),
-            ExactError::Empty => Self::Empty,
-            other => Self::Exact(other),
-        }
-    }
-}
-
-impl From<LevelsError> for DistanceError {
-    fn from(error: LevelsError) -> Self {
-        match error {
-            LevelsError::Stopped(stopped) => Self::Stopped(stopped),
-            other => Self::Levels(other),
-        }
-    }
-}
-
-impl From<SoupError> for DistanceError {
-    fn from(error: SoupError) -> Self {
-        match error {
-            SoupError::Stopped(stopped) => Self::Stopped(stopped),
-            SoupError::Empty { .. } => Self::Empty,
-        }
     }
 }
 
