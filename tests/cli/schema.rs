@@ -55,8 +55,12 @@ impl Schema {
             }
             "const" if value != meant => return wrong(format!("{meant} is wanted")),
             "enum" if !meant.as_array().expect("a list").contains(value) => return wrong(format!("one of {meant}")),
-            "minimum" if value.as_f64() < meant.as_f64() => return wrong(format!("at least {meant}")),
-            "maximum" if value.as_f64() > meant.as_f64() => return wrong(format!("at most {meant}")),
+            "minimum" if value.is_number() && value.as_f64() < meant.as_f64() => {
+                return wrong(format!("at least {meant}"));
+            }
+            "maximum" if value.is_number() && value.as_f64() > meant.as_f64() => {
+                return wrong(format!("at most {meant}"));
+            }
             "minItems" | "maxItems" => {
                 let count = value.as_array().map(|items| items.len() as u64);
                 let right = if word == "minItems" { count >= meant.as_u64() } else { count <= meant.as_u64() };
