@@ -172,9 +172,9 @@ fn options(args: &FieldArgs, scale: &Scale, given: &Given, held: u64) -> Result<
     let usual = FitOptions::default();
     // Colours that vary are kept apart by the vertices. Lengths are measured when the voxel is known.
     let keeps_all = args.simplify == Some(Simplify::Off) || args.simplify.is_none() && args.paint.is_some();
-    let tolerance = if keeps_all { 0.0 } else { usual.tolerance };
+    let simplify = if keeps_all { 0.0 } else { usual.simplify };
     Ok(Options {
-        fit: (!args.no_fit).then_some(FitOptions { tolerance, ..usual }),
+        fit: (!args.no_fit).then_some(FitOptions { simplify, ..usual }),
         orient: args.orient.into(),
         collapse: !args.no_collapse,
         // What the lattices and textures of the files take is taken already.
@@ -301,7 +301,7 @@ impl Run<'_> {
         let mut options = *self.options;
         if let (Some(Simplify::Within(length)), Some(fit)) = (self.args.simplify, &mut options.fit) {
             let h = pipeline::field_spacing(built, self.options).map_err(|e| self.failure(&e))?;
-            fit.tolerance = length.resolve(&Scale { voxel: Some(h), ..*self.scale })? / h;
+            fit.simplify = length.resolve(&Scale { voxel: Some(h), ..*self.scale })? / h;
         }
         Ok(options)
     }

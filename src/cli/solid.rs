@@ -97,14 +97,14 @@ fn options(
 fn fit(args: &SolidArgs, scale: &Scale, inputs: &[Input]) -> Result<Option<FitOptions>, Failure> {
     let varying = |input: &Input| matches!(input.loaded.colours, Some(Colours::Vertices(_) | Colours::Corners(_)));
     let usual = FitOptions::default();
-    let tolerance = match (args.simplify, scale.voxel) {
+    let simplify = match (args.simplify, scale.voxel) {
         (Some(Simplify::Off), _) => 0.0,
         (Some(Simplify::Within(length)), Some(h)) if h > 0.0 => length.resolve(scale)? / h,
         _ if inputs.iter().any(varying) => 0.0,
-        _ => usual.tolerance,
+        _ => usual.simplify,
     };
-    let kept_tolerance = if args.simplify.is_some() { tolerance } else { usual.kept_tolerance };
-    Ok((!args.no_fit).then_some(FitOptions { keep: !args.rebuild, tolerance, kept_tolerance, ..usual }))
+    let simplify_kept = if args.simplify.is_some() { simplify } else { usual.simplify_kept };
+    Ok((!args.no_fit).then_some(FitOptions { rebuild: args.rebuild, simplify, simplify_kept, ..usual }))
 }
 
 /// The options as the report states them, after defaults.
@@ -125,7 +125,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
         "collapse": options.collapse,
         "fit": options.fit.is_some(),
         "precision": options.precision,
-        "simplify_voxels": options.fit.map(|fit| fit.tolerance),
+        "simplify_voxels": options.fit.map(|fit| fit.simplify),
         "drop_smaller_as_given": args.drop_smaller.map(|volume| volume.to_string()),
         "simplify_as_given": args.simplify.map(|simplify| simplify.to_string()),
         "threads": rayon::current_num_threads(),

@@ -205,7 +205,7 @@ mod tests {
     fn simple(mesh: &TriMesh, tolerance: f64) -> TriMesh {
         let facets = Facets::new(mesh, std::iter::empty::<Plane>());
         let surface = Surface::new(mesh.clone(), own_sides(mesh));
-        let options = FitOptions { tolerance, ..FitOptions::default() };
+        let options = FitOptions { simplify: tolerance, ..FitOptions::default() };
         let off = vec![0.0; mesh.triangles.len()];
         simplified((&surface, &off), &facets, 1.0, &options, &Progress::none())
             .expect("not stopped")

@@ -121,7 +121,7 @@ pub(super) fn simplified(
         let solid = is_solid(&surface.mesh, true, progress)?;
         Ok(solid.then(|| Simple { surface: surface.clone(), off: off.to_vec() }))
     };
-    if options.tolerance <= 0.0 {
+    if options.simplify <= 0.0 {
         return as_it_is();
     }
     let task = Task { surface, off, facets, h, options };
@@ -274,7 +274,7 @@ impl<'a> Work<'a> {
         let at: Vec<DVec3> = surface.mesh.positions.par_iter().map(|p| *p / h).collect();
         let quadrics = quadrics(surface, facets, h, &edges);
         let largest = at.par_iter().map(|p| p.abs().max_element()).reduce(|| 0.0, f64::max);
-        let nothing = (NOTHING * options.tolerance).max(STEPS * f64::from(f32::EPSILON) * largest);
+        let nothing = (NOTHING * options.simplify).max(STEPS * f64::from(f32::EPSILON) * largest);
         Some(Self {
             surface,
             facets,
@@ -282,8 +282,8 @@ impl<'a> Work<'a> {
             quadrics,
             off: off.to_vec(),
             at,
-            most: options.tolerance,
-            most_kept: options.kept_tolerance,
+            most: options.simplify,
+            most_kept: options.simplify_kept,
             nothing,
         })
     }

@@ -16,7 +16,7 @@ pub struct SimpleSource {
     pub of: Vec<Option<u32>>,
 }
 
-/// Simplifies the flat parts of a valid solid within [`FitOptions::kept_tolerance`]. `classes` is empty or has a number for
+/// Simplifies the flat parts of a valid solid within [`FitOptions::simplify_kept`]. `classes` is empty or has a number for
 /// each triangle; triangles of different numbers are kept apart. `h` is the voxel spacing that the tolerance refers to, model
 /// units. There is no result where the mesh is no valid solid, as it is or with coordinates in `f32`.
 ///
@@ -32,7 +32,7 @@ pub fn simplified_source(
     let facets = Facets::new(mesh, []).with_classes(classes);
     let vertices_of = (0..mesh.positions.len() as u32).map(OfSource::new).collect();
     let surface = Surface { vertices_of, ..Surface::new(mesh.clone(), own_sides(mesh)) };
-    let options = FitOptions { tolerance: options.kept_tolerance, ..*options };
+    let options = FitOptions { simplify: options.simplify_kept, ..*options };
     let untouched = vec![0.0; mesh.triangles.len()];
     let simple = simplified((&surface, &untouched), &facets, h, &options, progress)?;
     let Some(simple) = simple.map(|simple| simple.surface) else { return Ok(None) };

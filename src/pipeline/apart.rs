@@ -59,7 +59,7 @@ impl Apart {
         let shells = shells(&soup.mesh, &soup.operands);
         let mesh = options.precision.of_mesh(&soup.mesh);
         let bodies = shells.list.iter().filter(|shell| shell.is_body()).count();
-        let keeps = options.fit.is_some_and(|fit| fit.keep);
+        let keeps = options.fit.is_some_and(|fit| !fit.rebuild);
         // A single open shell touches nothing but itself, which the fit looks at.
         let worth_looking = bodies > 0 && (shells.list.len() > 1 || shells.list[0].rims == 0);
         let contacts = match worth_looking {
@@ -181,7 +181,7 @@ impl Apart {
             let own: Vec<(u32, bool)> = kept.iter().copied().filter(|&(t, _)| soup.operands.of(t) == operand).collect();
             standing.add(operand, input, soup, &own, options.precision);
         }
-        let tolerance = options.fit.map_or(0.0, |fit| fit.kept_tolerance);
+        let tolerance = options.fit.map_or(0.0, |fit| fit.simplify_kept);
         match tolerance > 0.0 {
             true => standing.simplified(soup.classes(classes), &kept, options, h, progress),
             false => Ok(standing),

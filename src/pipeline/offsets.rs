@@ -166,7 +166,7 @@ impl Job<'_> {
         }
         let off = |p| (body.at(p, radius.abs() + self.h).0 - radius).abs();
         // All triangles stay: the second distance is to this surface.
-        let whole = FitOptions { tolerance: 0.0, ..self.surface.fit.unwrap_or_default() };
+        let whole = FitOptions { simplify: 0.0, ..self.surface.fit.unwrap_or_default() };
         let made = self.fitted(
             (there, &lattice),
             (&TriMesh::default(), &off),
@@ -235,7 +235,7 @@ impl Job<'_> {
         let mut surface = refine::merged(offset.contour, &facets, lattice, self.surface, self.progress)?;
         let mut fitted = None;
         if let Some(options) = options {
-            let options = FitOptions { keep: options.keep && !source.triangles.is_empty(), ..options };
+            let options = FitOptions { rebuild: options.rebuild || source.triangles.is_empty(), ..options };
             let (fit, report) = fit(&surface, &facets, &evidence, self.h, &options, self.progress)?;
             (surface, fitted) = (fit, Some(report));
         }

@@ -320,12 +320,12 @@ impl Input {
         let cells = self.cells(lattice);
         let rates = match &options.fit {
             None => &UNFITTED,
-            Some(fit) if fit.keep && self.operands > 1 => &COMBINED,
-            Some(fit) if fit.keep => &KEPT,
+            Some(fit) if !fit.rebuild && self.operands > 1 => &COMBINED,
+            Some(fit) if !fit.rebuild => &KEPT,
             Some(_) => &REBUILT,
         };
         let (seconds, triangles) = match &options.fit {
-            Some(fit) if fit.keep => self.kept(lattice, cells),
+            Some(fit) if !fit.rebuild => self.kept(lattice, cells),
             _ => (self.rebuild_seconds(cells), TRIANGLES_PER_CELL * cells),
         };
         Plan { triangles: triangles as u64, seconds, ..self.sized(lattice, self.memory(rates, lattice, 0.0)) }
@@ -336,7 +336,7 @@ impl Input {
         let cells = self.cells(lattice);
         let memory = offsets.rates().map_or(0.0, |rates| self.memory(rates, lattice, offsets.radius / lattice.h));
         let triangles = match &options.fit {
-            Some(fit) if fit.keep => self.kept(lattice, cells).1,
+            Some(fit) if !fit.rebuild => self.kept(lattice, cells).1,
             _ => TRIANGLES_PER_CELL * cells,
         };
         let seconds = self.rebuild_seconds(cells) * OFFSET_SECONDS * f64::from(offsets.count);

@@ -51,13 +51,13 @@ impl Work {
         let of = |rates: &[(Stage, f64)], count: f64| -> Vec<StageTime> {
             rates.iter().map(|&(stage, rate)| StageTime { stage, seconds: rate * count }).collect()
         };
-        let fit = fit.map(|fit| StageTime { stage: Stage::Fit, seconds: FIT[usize::from(!fit.keep)] * self.cells });
+        let fit = fit.map(|fit| StageTime { stage: Stage::Fit, seconds: FIT[usize::from(fit.rebuild)] * self.cells });
         of(&PER_TRIANGLE, self.triangles as f64).into_iter().chain(of(&PER_CELL, self.cells)).chain(fit).collect()
     }
 
     /// About how many triangles the result has.
     pub fn made(&self, fit: Option<&FitOptions>) -> f64 {
-        if fit.is_some_and(|fit| fit.keep) { self.triangles as f64 } else { MADE * self.cells }
+        if fit.is_some_and(|fit| !fit.rebuild) { self.triangles as f64 } else { MADE * self.cells }
     }
 }
 
@@ -77,7 +77,7 @@ mod tests {
         let operands = [&tetrahedron];
         let work = |n| Work::of(&operands, &Options::new(VoxelSize::Along(n))).expect("a lattice");
         let seconds = |work: Work, fit: Option<&FitOptions>| work.stages(fit).iter().map(|s| s.seconds).sum::<f64>();
-        let (keeping, rebuilding) = (FitOptions::default(), FitOptions { keep: false, ..FitOptions::default() });
+        let (keeping, rebuilding) = (FitOptions::default(), FitOptions { rebuild: true, ..FitOptions::default() });
         let rising = [
             seconds(work(16), None),
             seconds(work(64), None),

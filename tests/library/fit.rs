@@ -35,7 +35,7 @@ fn turn(seed: u64) -> DMat3 {
 
 /// All of the surface from the voxels: what is kept as it is does not show the fit.
 fn at(resolution: u32) -> Options {
-    let fit = Some(FitOptions { keep: false, ..FitOptions::default() });
+    let fit = Some(FitOptions { rebuild: true, ..FitOptions::default() });
     Options { fit, ..Options::new(VoxelSize::Along(resolution)) }
 }
 
@@ -135,7 +135,7 @@ fn without_a_fit_the_voxels_show_and_without_simplification_all_triangles_stay()
     let mesh = cuboid(DVec3::ZERO, DVec3::ONE, turn(1));
     let raw = repaired(&mesh, &Options { fit: None, ..at(32) });
     assert!(raw.report.fit.is_none() && farthest_corner(&mesh, &raw.solid) > 1e-3);
-    let all = FitOptions { keep: false, tolerance: 0.0, ..FitOptions::default() };
+    let all = FitOptions { rebuild: true, simplify: 0.0, ..FitOptions::default() };
     let kept = repaired(&mesh, &Options { fit: Some(all), ..at(32) });
     assert!(kept.solid.triangles.len() > 2000 && farthest_corner(&mesh, &kept.solid) < 1e-5);
 }

@@ -14,7 +14,7 @@ use proptest::test_runner::RngSeed;
 
 /// All triangles stay: simplification off.
 fn at(resolution: u32) -> Options {
-    let fit = Some(FitOptions { tolerance: 0.0, kept_tolerance: 0.0, ..FitOptions::default() });
+    let fit = Some(FitOptions { simplify: 0.0, simplify_kept: 0.0, ..FitOptions::default() });
     Options { fit, ..Options::new(VoxelSize::Along(resolution)) }
 }
 

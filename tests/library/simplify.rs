@@ -24,7 +24,7 @@ fn made(operands: &[TriMesh], expression: &Expression, options: &Options) -> (Ou
 
 /// All of the surface from the voxels, simplified within `tolerance`, h.
 fn rebuilt(resolution: u32, tolerance: f64) -> Options {
-    let fit = Some(FitOptions { keep: false, tolerance, ..FitOptions::default() });
+    let fit = Some(FitOptions { rebuild: true, simplify: tolerance, ..FitOptions::default() });
     Options { fit, ..Options::new(VoxelSize::Along(resolution)) }
 }
 

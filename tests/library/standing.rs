@@ -288,7 +288,7 @@ fn far_from_the_origin_all_is_as_near_it() {
 #[test]
 fn what_a_lattice_fuses_or_loses_is_told_and_large() {
     let voxels = |mesh: &TriMesh, resolution: u32| {
-        let fit = Some(FitOptions { keep: false, ..FitOptions::default() });
+        let fit = Some(FitOptions { rebuild: true, ..FitOptions::default() });
         repaired(mesh, &Options { fit, ..at(resolution) }).report.topology.expect("a repair has one")
     };
     let fused = voxels(&chain(4, 0.02), 48);
@@ -309,7 +309,7 @@ fn simplification_by_hand_means_what_stands_as_well() {
     mesh.positions.iter_mut().for_each(|p| *p /= 3.0);
     let usual = repaired(&mesh, &at(32));
     assert_eq!(usual.solid, mesh);
-    let fit = Some(FitOptions { kept_tolerance: 0.002, ..FitOptions::default() });
+    let fit = Some(FitOptions { simplify_kept: 0.002, ..FitOptions::default() });
     let simple = repaired(&mesh, &Options { fit, ..at(32) });
     assert_eq!((simple.solid.triangles.len(), judged(&simple.solid).volume), (12, 1.0));
     assert!(!simple.report.lattice);

@@ -453,7 +453,7 @@ fn stages_are_weighed_by_the_plan() {
         course.begin(stage, Duration::ZERO);
         course.position(Duration::ZERO)
     };
-    let (keeping, rebuilding) = (FitOptions::default(), FitOptions { keep: false, ..FitOptions::default() });
+    let (keeping, rebuilding) = (FitOptions::default(), FitOptions { rebuild: true, ..FitOptions::default() });
     assert!(begun(&rebuilding, Stage::Fit) < 0.3 && begun(&keeping, Stage::Fit) > 0.4);
     assert!(begun(&keeping, Stage::Write) > 0.95, "few triangles are written");
 }

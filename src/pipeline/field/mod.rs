@@ -139,7 +139,7 @@ pub fn field_surface(
     let mut fitted = None;
     if let Some(options) = options.fit {
         stages.begin(Stage::Fit)?;
-        let options = crate::fit::FitOptions { keep: false, ..options };
+        let options = crate::fit::FitOptions { rebuild: true, ..options };
         let (fit, report) = fit(&surface, &facets, &Evidence::default(), lattice.h, &options, progress)?;
         (surface, fitted) = (fit, Some(report));
     }
