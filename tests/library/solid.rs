@@ -195,6 +195,9 @@ proptest! {
         scale in 0.5f64..1.5,
     ) {
         let shift = DVec3::from_array(shift);
+        // Where sides come nearer to each other than two voxels, a sheet is left that the voxels may lose.
+        let gaps = [shift, shift + scale - 1.0].map(DVec3::abs);
+        prop_assume!(gaps.iter().all(|gap| gap.min_element() > 0.08));
         let operands = [unit_box(DVec3::ZERO), cuboid(shift, shift + scale)];
         let overlap = ((shift + scale).min(DVec3::ONE) - shift.max(DVec3::ZERO)).max(DVec3::ZERO).element_product();
         prop_assume!(overlap > 0.02);
