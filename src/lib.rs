@@ -12,7 +12,7 @@
 //! let ball = meshwright::repair(&io::read("testdata/hollow_ball.stl")?, VoxelSize::Along(64))?;
 //! let both = meshwright::union([&mug, &ball], VoxelSize::Along(64))?;
 //! let far = both.distance().at(DVec3::splat(1000.0)); // the signed distance; `contains(p)` asks whether a point is inside
-//! let rounded = both.close(0.05, VoxelSize::Along(64))?; // what a ball outside cannot reach is filled
+//! let rounded = both.close(3.0, VoxelSize::Along(64))?; // what a ball outside cannot reach is filled
 //! io::write(out("both.stl"), &rounded)?;
 //! assert!(far > 0.0 && rounded.validity().volume >= both.validity().volume);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

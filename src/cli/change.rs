@@ -8,15 +8,15 @@ use super::drain::DrainChoice;
 use super::exit::Failure;
 use super::length::{Length, Scale};
 use super::report::RunReport;
-use super::session::Session;
 use super::shared_args::CommonArgs;
 use super::words::{self, UnitName};
 use crate::mesh::TriMesh;
 use crate::morphology::{Canal, Operation};
 use crate::pipeline::{
-    self, Advice, BooleanError, CanalOptions, CanalOutcome, CanalReport, HollowOptions, MorphologyOptions, Operand,
+    self, Advice, BooleanError, CanalError, CanalOptions, CanalReport, HollowOptions, MorphologyOptions, Operand,
     Outcome, Plan, Remove, SheetSide, SurfaceOptions, ThickenOptions, VoxelSize,
 };
+use crate::progress::Progress;
 
 /// A change, as asked for.
 #[derive(Debug, Clone)]
@@ -111,44 +111,32 @@ impl Change {
         }
     }
 
-    /// Makes it of a solid that was made of `operands`; what has no solid can only grow thicker.
-    #[allow(clippy::too_many_arguments)]
+    /// Makes it of a solid; what has no solid can only grow thicker.
     pub fn apply(
         &self,
         made: Result<Outcome, BooleanError>,
-        operands: &[Operand<'_>],
-        surface: &SurfaceOptions,
-        scale: &Scale,
-        failed: &Failed<'_>,
-        session: &Session,
+        site: &Site<'_>,
         report: &mut RunReport,
     ) -> Result<Changed, Failure> {
-        let progress = &session.progress;
-        let resolved = self.resolved(surface, scale)?;
+        let resolved = self.resolved(site.surface, site.scale)?;
         resolved.tell(&mut report.options);
-        if let Resolved::Thicken(options) = &resolved {
-            let solid = match made {
-                Ok(outcome) => Some(outcome),
-                Err(BooleanError::Nothing(_)) => None,
-                Err(error) => return Err(failed(&error)),
-            };
-            return thickened(solid, operands, options, failed, session);
-        }
-        let outcome = made.map_err(|e| failed(&e))?;
-        let changed = match resolved {
-            Resolved::Morphology(options) => {
-                pipeline::morphology(&outcome.solid, &options, progress).map_err(|e| failed(&e))?
-            }
-            Resolved::Hollow(options) => {
-                pipeline::hollow(&outcome.solid, &options, progress).map_err(|e| failed(&e))?
-            }
-            Resolved::Canals(options) => {
-                let found = pipeline::canals(&outcome.solid, &options, progress).map_err(|e| failed(&e))?;
-                return canals(outcome, found, operands, session);
-            }
-            Resolved::Thicken(_) => return Err(Failure::internal("what grows thicker was made before")),
+        let outcome = match made {
+            Err(BooleanError::Nothing(_)) if matches!(resolved, Resolved::Thicken(_)) => None,
+            made => Some(made.map_err(|e| (site.failed)(&e))?),
         };
-        follow(outcome, changed, operands, session).map(Changed::from)
+        match (resolved, outcome) {
+            (Resolved::Thicken(options), outcome) => site.thickened(outcome, &options),
+            (_, None) => Err(Failure::internal("only what grows thicker can do without a solid")),
+            (Resolved::Morphology(options), Some(outcome)) => {
+                let changed = pipeline::morphology(&outcome.solid, &options, site.progress);
+                site.followed(outcome, changed).map(Changed::from)
+            }
+            (Resolved::Hollow(options), Some(outcome)) => {
+                let changed = pipeline::hollow(&outcome.solid, &options, site.progress);
+                site.followed(outcome, changed).map(Changed::from)
+            }
+            (Resolved::Canals(options), Some(outcome)) => site.canals(outcome, &options),
+        }
     }
 
     /// The options of its pipeline, with lengths in model units.
@@ -185,50 +173,52 @@ impl Change {
 /// Makes a failure of a pipeline's error.
 type Failed<'a> = dyn Fn(&dyn Advice) -> Failure + 'a;
 
-fn follow(
-    outcome: Outcome,
-    changed: pipeline::Changed,
-    operands: &[Operand<'_>],
-    session: &Session,
-) -> Result<Outcome, Failure> {
-    Ok(outcome.followed_by(changed, operands.iter().copied(), &session.progress)?)
+/// What a change is made with.
+pub struct Site<'a> {
+    /// What the solid was made of.
+    pub operands: &'a [Operand<'a>],
+    /// How new surface is made.
+    pub surface: &'a SurfaceOptions,
+    /// What lengths are measured against.
+    pub scale: &'a Scale,
+    /// What an error means.
+    pub failed: &'a Failed<'a>,
+    /// How far it is, and whether it is to stop.
+    pub progress: &'a Progress,
 }
 
-fn thickened(
-    outcome: Option<Outcome>,
-    operands: &[Operand<'_>],
-    options: &ThickenOptions,
-    failed: &Failed<'_>,
-    session: &Session,
-) -> Result<Changed, Failure> {
-    // What negative parts are taken away from has no sheets any more.
-    let nothing = TriMesh::default();
-    let surface = if let [operand] = operands { operand.mesh } else { &nothing };
-    let solid = outcome.as_ref().map(|outcome| &outcome.solid);
-    let changed = pipeline::thicken(solid, surface, options, &session.progress).map_err(|e| failed(&e))?;
-    Ok(Changed::from(match outcome {
-        Some(outcome) => follow(outcome, changed, operands, session)?,
-        None => changed.into(),
-    }))
-}
+impl Site<'_> {
+    fn followed<E: Advice>(&self, outcome: Outcome, changed: Result<pipeline::Changed, E>) -> Result<Outcome, Failure> {
+        let changed = changed.map_err(|e| (self.failed)(&e))?;
+        Ok(outcome.followed_by(changed, self.operands.iter().copied(), self.progress)?)
+    }
 
-fn canals(
-    outcome: Outcome,
-    found: CanalOutcome,
-    operands: &[Operand<'_>],
-    session: &Session,
-) -> Result<Changed, Failure> {
-    let (mut outcome, canal_of) = match found.filled {
-        None => (outcome, found.canal_of),
-        Some(filled) => {
-            let outcome = follow(outcome, filled, operands, session)?;
-            let canal_of = vec![0; outcome.solid.triangles.len()];
-            (outcome, canal_of)
-        }
-    };
-    outcome.report.stages.extend(found.stages);
-    outcome.report.canals = Some(found.report);
-    Ok(Changed { outcome, canal_of })
+    fn thickened(&self, outcome: Option<Outcome>, options: &ThickenOptions) -> Result<Changed, Failure> {
+        // What negative parts are taken away from has no sheets any more.
+        let nothing = TriMesh::default();
+        let surface = if let [operand] = self.operands { operand.mesh } else { &nothing };
+        let solid = outcome.as_ref().map(|outcome| &outcome.solid);
+        let changed = pipeline::thicken(solid, surface, options, self.progress);
+        Ok(Changed::from(match outcome {
+            Some(outcome) => self.followed(outcome, changed)?,
+            None => changed.map_err(|e| (self.failed)(&e))?.into(),
+        }))
+    }
+
+    fn canals(&self, outcome: Outcome, options: &CanalOptions) -> Result<Changed, Failure> {
+        let found = pipeline::canals(&outcome.solid, options, self.progress).map_err(|e| (self.failed)(&e))?;
+        let (mut outcome, canal_of) = match found.filled {
+            None => (outcome, found.canal_of),
+            Some(filled) => {
+                let outcome = self.followed(outcome, Ok::<_, CanalError>(filled))?;
+                let canal_of = vec![0; outcome.solid.triangles.len()];
+                (outcome, canal_of)
+            }
+        };
+        outcome.report.stages.extend(found.stages);
+        outcome.report.canals = Some(found.report);
+        Ok(Changed { outcome, canal_of })
+    }
 }
 
 impl Resolved {

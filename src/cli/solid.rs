@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::change::{self, Change, Changed};
+use super::change::{self, Change, Changed, Site};
 use super::entries::OutputEntry;
 use super::epilogue;
 use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
@@ -207,7 +207,10 @@ fn make(
     let failed = |e: &dyn Advice| failure(&e, inputs, unit, args);
     let Changed { mut outcome, mut canal_of } = match job.change {
         None => made.map(Changed::from).map_err(|e| failed(&e))?,
-        Some(change) => change.apply(made, &operands, &options.surface(), scale, &failed, session, report)?,
+        Some(change) => {
+            let (surface, progress) = (&options.surface(), &session.progress);
+            change.apply(made, &Site { operands: &operands, surface, scale, failed: &failed, progress }, report)?
+        }
     };
     if let Some(volume) = args.drop_smaller {
         let least = volume.resolve(scale)?;
