@@ -1,5 +1,7 @@
 //! `devices`: the graphics adapters of this machine.
 
+#[cfg(not(feature = "gpu"))]
+use super::entries::DeviceReport;
 use super::exit::{Exit, Failure};
 use super::report::RunReport;
 use super::result::RunResult;
