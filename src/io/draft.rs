@@ -172,10 +172,11 @@ fn create(target: &Path, existing: Option<&Metadata>) -> io::Result<(PathBuf, Fi
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn names(folder: &Path) -> Vec<String> {
+    /// What lies in a folder, in order.
+    pub(in crate::io) fn names(folder: &Path) -> Vec<String> {
         let entries = fs::read_dir(folder).expect("it is there");
         let mut names: Vec<String> =
             entries.map(|entry| entry.expect("one").file_name().to_string_lossy().into()).collect();

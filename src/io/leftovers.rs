@@ -64,14 +64,7 @@ mod tests {
     use std::fs::File;
 
     use super::*;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let entries = fs::read_dir(folder).expect("it is there");
-        let mut names: Vec<String> =
-            entries.map(|entry| entry.expect("one").file_name().to_string_lossy().into()).collect();
-        names.sort();
-        names
-    }
+    use crate::io::draft::tests::names;
 
     #[test]
     #[cfg(target_os = "linux")]

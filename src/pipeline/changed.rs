@@ -1,6 +1,7 @@
 //! What was made of a solid, and how it follows on what the solid came from.
 
-use super::{Draft, Dropped, Operand, Outcome, Report, TriangleSource};
+use super::kind::kinds_of;
+use super::{Operand, Outcome, Report, TriangleCounts, TriangleSource};
 use crate::lattice::Lattice;
 use crate::mesh::{Solid, SolidError, TriMesh};
 use crate::progress::Progress;
@@ -45,9 +46,9 @@ impl Outcome {
         let sources: Vec<TriangleSource> = own.iter().map(source).collect();
         let mut report = self.report.then(report);
         report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
-        let draft = Draft { mesh: solid.mesh().clone(), sources, lattice, report };
+        report.triangles = TriangleCounts::of(&kinds_of(&solid, &sources, &meshes));
         progress.check()?;
-        Ok(draft.counted(&meshes).painted(solid, &operands))
+        Ok(Self::painted(solid, sources, lattice, report, &operands))
     }
 }
 
@@ -64,28 +65,19 @@ impl From<Changed> for Outcome {
 
 impl Report {
     /// The account of this run and of an operation after it.
-    fn then(self, next: Self) -> Self {
-        let mut both = self;
+    fn then(mut self, mut next: Self) -> Self {
+        self.stages.append(&mut next.stages);
+        self.warnings.append(&mut next.warnings);
+        self.crumbs = self.crumbs.and(next.crumbs);
         if next.topology.is_some() {
             // The operation ended in a boolean, whose rays saw all of the result.
-            both = Self {
-                orient: both.orient,
-                crumbs: both.crumbs,
-                stages: both.stages,
-                warnings: both.warnings,
-                triangles: both.triangles,
-                ..next.clone()
-            };
+            let Self { orient, crumbs, stages, warnings, triangles, .. } = self;
+            return Self { orient, crumbs, stages, warnings, triangles, ..next };
         }
-        if next.morphology.is_some() || next.topology.is_some() {
-            both.fit = next.fit;
+        if next.morphology.is_some() {
+            self.fit = next.fit;
         }
-        both.morphology = next.morphology;
-        both.hollow = next.hollow;
-        both.thicken = next.thicken;
-        both.crumbs = Dropped::and(both.crumbs, next.crumbs);
-        both.stages.extend(next.stages);
-        both.warnings.extend(next.warnings);
-        both
+        let Self { morphology, hollow, thicken, .. } = next;
+        Self { morphology, hollow, thicken, ..self }
     }
 }

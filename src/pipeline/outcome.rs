@@ -52,20 +52,24 @@ impl Draft {
     /// The judged result, with what its operands look like.
     pub(super) fn judged(self, operands: &[Operand<'_>], progress: &Progress) -> Result<Outcome, SolidError> {
         let Self { mesh, sources, lattice, report } = self;
-        let solid = Solid::check(mesh, progress)?;
-        Ok(Self { mesh: TriMesh::default(), sources, lattice, report }.painted(solid, operands))
-    }
-
-    /// The result with its mesh as the solid that it was judged to be, and with what its operands look like.
-    pub(super) fn painted(self, solid: Solid, operands: &[Operand<'_>]) -> Outcome {
-        let Self { sources, lattice, report, .. } = self;
-        let colours = colours::carry_colours(&solid, &sources, operands);
-        let texture = textures::carry_texture(&solid, &sources, operands);
-        Outcome { solid, sources, colours, texture, lattice, report }
+        Ok(Outcome::painted(Solid::check(mesh, progress)?, sources, lattice, report, operands))
     }
 }
 
 impl Outcome {
+    /// A solid with what its operands look like.
+    pub(super) fn painted(
+        solid: Solid,
+        sources: Vec<TriangleSource>,
+        lattice: Lattice,
+        report: Report,
+        operands: &[Operand<'_>],
+    ) -> Self {
+        let colours = colours::carry_colours(&solid, &sources, operands);
+        let texture = textures::carry_texture(&solid, &sources, operands);
+        Self { solid, sources, colours, texture, lattice, report }
+    }
+
     /// What each triangle is: kept, rebuilt or made up. `operands`: those that the outcome was made of, in the same order.
     pub fn kinds<'a>(&self, operands: impl IntoIterator<Item: Into<Operand<'a>>>) -> Vec<TriangleKind> {
         let operands: Vec<&TriMesh> = operands.into_iter().map(|operand| operand.into().mesh).collect();
