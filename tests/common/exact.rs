@@ -1,7 +1,7 @@
 //! The exact distance by looking at all triangles, and what must agree with it: points, lattices, characteristics, prisms, levels.
 
 use glam::{DVec3, IVec3};
-use meshwright::lattice::{DistanceField, Lattice, Slot};
+use meshwright::lattice::{DistanceField, Grid, Lattice, Slot};
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
 use meshwright::sdf::Levels;
@@ -11,7 +11,7 @@ use meshwright::sdf::prism::prism;
 use rayon::prelude::*;
 
 use super::fields::{apart, voxel};
-use super::shapes::{gear, hard, knot, stack, turned};
+use super::shapes::{ball, gear, hard, knot, stack, torus, turned};
 use super::{read, sample};
 
 /// A lattice of spacing `h` around the mesh and `room` (h) beyond.
@@ -220,4 +220,23 @@ pub fn threads_leave_levels_alone(mut mesh: TriMesh) {
         pool.install(|| Levels::of(&mesh, &around, &Progress::none()).expect("levels"))
     };
     assert!(with(1) == with(3));
+}
+
+/// Lattices that hold part of a body, lie in it, or miss it: `check` compares a field with the truth, `field` makes it.
+pub fn check_cut_lattices(
+    check: impl Fn(&str, &TriMesh, &Lattice, Band) -> usize,
+    field: impl Fn(&TriMesh, &Lattice, Band) -> Grid<f32>,
+) {
+    let mesh = turned(torus(24, 12), 0.4);
+    let low = DVec3::new(0.4, -0.3, -0.2);
+    for (low, band) in
+        [(low, 3.0), (DVec3::new(0.95, -0.05, -0.1), 1.0), (DVec3::splat(2.0), 8.0), (DVec3::splat(9.0), 2.0)]
+    {
+        let small = Lattice { origin: low, h: 1.0 / 60.0, dims: IVec3::new(41, 33, 20) };
+        check("torus", &mesh, &small, Band::Within(band));
+    }
+    let inside = Lattice { origin: DVec3::splat(-0.2), h: 0.01, dims: IVec3::splat(40) };
+    let grid = field(&ball(2, |_| 1.0), &inside, Band::Within(2.0));
+    assert_eq!(grid.bricks.len(), 0);
+    assert_eq!((grid.get(IVec3::ZERO), grid.get(IVec3::new(39, 20, 3))), (-2.0, -2.0));
 }

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use meshwright::gpu::{Device, GpuError, GpuMethod, GpuOptions, GpuReport, Wanted, ldis};
 use meshwright::lattice::Lattice;
-use meshwright::ldi::{self, Layers};
+use meshwright::ldi::{self, Layers, Operands, balance};
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
 use meshwright::sdf::exact::{Band, ExactOptions, Sign, exact};
@@ -12,6 +12,7 @@ use meshwright::sdf::prism::prism;
 
 use super::exact::lattice;
 use super::fields::apart;
+use super::stages;
 
 /// The best adapter of this machine, opened once. Where there is none the test is left out, unless `MESHWRIGHT_GPU=required` says that there
 /// must be one.
@@ -82,6 +83,21 @@ pub fn compare(
         assert_equal(&format!("{what}, {:?}", options.method), &cpu, &gpu);
     }
     cpu
+}
+
+/// Asserts that the crossings of a closed mesh are the same by both methods at 64 voxels, and by the default one at 128 and half a voxel
+/// apart, and that they balance.
+pub fn check_closed(device: &Device, name: &str, mesh: &TriMesh) {
+    let operands = Operands::new([mesh.triangles.len()]);
+    for (resolution, factor, methods) in [(64, 1, &BOTH[..]), (128, 1, &BOTH[..1]), (64, 2, &BOTH[..1])] {
+        let lattice = stages::lattice_of(mesh, resolution);
+        let methods: Vec<_> = methods.iter().copied().map(by).collect();
+        let layers = compare(device, &format!("{name} at {resolution}"), mesh, &lattice, factor, &methods);
+        for layers in layers {
+            let balance = balance(&layers, &operands);
+            assert!(balance.occupied > 0 && balance.unbalanced == 0, "{name}: {balance:?}");
+        }
+    }
 }
 
 /// Compares drawn prisms with the exact field and with their twin on the main processor.

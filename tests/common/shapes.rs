@@ -43,6 +43,11 @@ pub fn torus_of(around: u32, tube: u32, radius: f64, tube_radius: f64) -> TriMes
         let r = radius + tube_radius * t.cos();
         DVec3::new(r * a.cos(), r * a.sin(), tube_radius * t.sin())
     };
+    closed_tube(around, tube, vertex)
+}
+
+/// A tube that ends where it begins: `around` rings of `tube` vertices each, ring after ring.
+fn closed_tube(around: u32, tube: u32, vertex: impl Fn(u32) -> DVec3) -> TriMesh {
     let index = |i: u32, j: u32| (i % around) * tube + j % tube;
     let quad = |n: u32| {
         let (i, j) = (n / tube, n % tube);
@@ -159,16 +164,7 @@ pub fn knot(around: u32, tube: u32) -> TriMesh {
         let along = (middle(t + 1e-4) - middle(t - 1e-4)).normalize();
         middle(t) + 0.4 * (normal(t) * u.cos() + normal(t).cross(along).normalize() * u.sin())
     };
-    let index = |i: u32, j: u32| (i % around) * tube + j % tube;
-    let quad = |n: u32| {
-        let (i, j) = (n / tube, n % tube);
-        let [a, b, c, d] = [index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)];
-        [[a, b, c], [a, c, d]]
-    };
-    TriMesh {
-        positions: (0..around * tube).map(vertex).collect(),
-        triangles: (0..around * tube).flat_map(quad).collect(),
-    }
+    closed_tube(around, tube, vertex)
 }
 
 /// A gear wheel with a bore: long thin triangles, sharp edges that bend inwards and outwards.

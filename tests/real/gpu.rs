@@ -1,27 +1,16 @@
 //! The graphics processor against the main one.
 
 use meshwright::gpu::GpuMethod;
-use meshwright::ldi::{Operands, balance};
 
-use crate::common::gpu::{BOTH, by, check_prisms, compare, device};
+use crate::common::gpu::{BOTH, by, check_closed, check_prisms, compare, device};
 use crate::common::stages;
 use crate::data;
 
-/// Both methods at 64 voxels, and the default one at 128; half a voxel apart, too.
 #[test]
 fn all_clean_meshes_have_the_same_crossings_in_all_directions() {
     let (Some(data), Some(device)) = (data(), device()) else { return };
     for (name, mesh) in data.clean() {
-        let operands = Operands::new([mesh.triangles.len()]);
-        for (resolution, factor, methods) in [(64, 1, &BOTH[..]), (128, 1, &BOTH[..1]), (64, 2, &BOTH[..1])] {
-            let lattice = stages::lattice_of(&mesh, resolution);
-            let methods: Vec<_> = methods.iter().copied().map(by).collect();
-            let layers = compare(device, &format!("{name} at {resolution}"), &mesh, &lattice, factor, &methods);
-            for layers in layers {
-                let balance = balance(&layers, &operands);
-                assert!(balance.occupied > 0 && balance.unbalanced == 0, "{name}: {balance:?}");
-            }
-        }
+        check_closed(device, &name, &mesh);
     }
 }
 

@@ -11,8 +11,8 @@ use meshwright::sdf::characteristics::{characteristics, cost};
 use meshwright::sdf::exact::{Band, ExactError, ExactOptions};
 use proptest::prelude::*;
 
-use crate::common::exact::{Case, cases, check_characteristics, lattice};
-use crate::common::shapes::{ball, hard, torus, turned};
+use crate::common::exact::{Case, cases, check_characteristics, check_cut_lattices, lattice};
+use crate::common::shapes::{ball, hard, turned};
 
 fn options(band: Band) -> ExactOptions {
     ExactOptions { band, max_memory: None }
@@ -44,18 +44,7 @@ fn bands_of_any_width_and_none() {
 
 #[test]
 fn a_lattice_that_cuts_the_body_or_misses_it() {
-    let mesh = turned(torus(24, 12), 0.4);
-    let low = DVec3::new(0.4, -0.3, -0.2);
-    for (low, band) in
-        [(low, 3.0), (DVec3::new(0.95, -0.05, -0.1), 1.0), (DVec3::splat(2.0), 8.0), (DVec3::splat(9.0), 2.0)]
-    {
-        let small = Lattice { origin: low, h: 1.0 / 60.0, dims: IVec3::new(41, 33, 20) };
-        check_characteristics("torus", &mesh, &small, Band::Within(band));
-    }
-    let inside = Lattice { origin: DVec3::splat(-0.2), h: 0.01, dims: IVec3::splat(40) };
-    let grid = field(&ball(2, |_| 1.0), &inside, Band::Within(2.0));
-    assert_eq!(grid.bricks.len(), 0);
-    assert_eq!((grid.get(IVec3::ZERO), grid.get(IVec3::new(39, 20, 3))), (-2.0, -2.0));
+    check_cut_lattices(check_characteristics, field);
 }
 
 #[test]

@@ -1,12 +1,10 @@
 //! Meshes of every kind.
 
 use meshwright::gpu::GpuMethod;
-use meshwright::ldi::{Operands, balance};
 
-use crate::common::gpu::{BOTH, by, compare, device};
+use crate::common::gpu::{BOTH, by, check_closed, compare, device};
 use crate::common::{read, sample, shapes, stages};
 
-/// Both methods at 64 voxels, and the default one at 128; half a voxel apart, too.
 #[test]
 fn closed_meshes_have_the_same_crossings_in_all_directions() {
     let Some(device) = device() else { return };
@@ -14,16 +12,7 @@ fn closed_meshes_have_the_same_crossings_in_all_directions() {
     meshes.extend([("knot", shapes::knot(96, 16)), ("gear", shapes::gear(24)), ("stack", shapes::stack(0.2))]);
     meshes.extend(["torus.ply", "monkey_saddle.off", "hollow_ball.stl"].map(|name| (name, read(&sample(name)))));
     for (name, mesh) in meshes {
-        let operands = Operands::new([mesh.triangles.len()]);
-        for (resolution, factor, methods) in [(64, 1, &BOTH[..]), (128, 1, &BOTH[..1]), (64, 2, &BOTH[..1])] {
-            let lattice = stages::lattice_of(&mesh, resolution);
-            let methods: Vec<_> = methods.iter().copied().map(by).collect();
-            let layers = compare(device, &format!("{name} at {resolution}"), &mesh, &lattice, factor, &methods);
-            for layers in layers {
-                let balance = balance(&layers, &operands);
-                assert!(balance.occupied > 0 && balance.unbalanced == 0, "{name}: {balance:?}");
-            }
-        }
+        check_closed(device, name, &mesh);
     }
 }
 
