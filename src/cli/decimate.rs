@@ -113,7 +113,7 @@ pub fn run(args: &DecimateArgs, session: &Session, report: &mut RunReport) -> Re
     let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
     report.result =
         Some(RunResult::Decimation { decimate: done.clone(), comparison: comparison.clone(), output: None });
-    let written = solid::write(mesh, paint, &target, session, report)?;
+    let written = solid::write(&made, paint, &target, session, report)?;
     report.written(written);
     let missed = !done.reached && options.max_deviation.is_none();
     if !done.reached {

@@ -22,7 +22,7 @@ use super::{backend, doubts, keep, limits, machine, map, negative, summary, tabl
 use crate::fit::{FitOptions, rounded};
 use crate::io::{Colours, Format, Loaded, Paint, Unit};
 use crate::ldi::Expression;
-use crate::mesh::{Bounds, TriMesh, Validity, validate};
+use crate::mesh::{Bounds, Solid, TriMesh, Validity, validate};
 use crate::pipeline::{self, Advice, Operand, Options, Precision, VoxelSize, Work};
 use crate::progress::Stage;
 
@@ -251,15 +251,15 @@ fn make(
 
 /// Writes the result and judges the written file.
 pub(super) fn write<'a>(
-    mesh: &'a TriMesh,
+    solid: &'a Solid,
     paint: impl Into<Paint<'a>>,
     target: &Target,
     session: &Session,
     report: &mut RunReport,
 ) -> Result<OutputEntry, Failure> {
     let paint = paint.into();
-    report.warnings.extend(paint::lost(mesh, &paint, target));
-    let arranged = Arranged::new(mesh, &paint, target.options.format);
+    report.warnings.extend(paint::lost(solid, &paint, target));
+    let arranged = Arranged::new(solid, &paint, target.options.format);
     let (stored, moved) = stored(&arranged.mesh, target.options.format);
     if let Some(moved) = moved {
         report.warnings.push(rounding(moved, target.options.format));
@@ -270,7 +270,7 @@ pub(super) fn write<'a>(
     let factor = target.options.factor();
     let (entry, validity) = report.timed(Stage::WriteAndVerify, |_| {
         write_verified(target, &stored, arranged.paint(), session, |read| {
-            judge(read, (&stored, factor), moved, session)
+            judge(read, solid, (&stored, factor), moved, session)
         })
     })?;
     Ok(OutputEntry { validity: Some(validity), ..entry })
@@ -297,11 +297,16 @@ fn rounding(moved: f64, format: Format) -> String {
 /// rounding to the numbers of the format moved vertices.
 fn judge(
     read: &Loaded,
+    solid: &Solid,
     (made, factor): (&TriMesh, f64),
     moved: Option<f64>,
     session: &Session,
 ) -> Result<Validity, Failure> {
     check_same(&read.mesh, made, factor)?;
+    // Vertex for vertex it is the mesh that has been checked already.
+    if !read.format.repeats_vertices() && *solid == read.mesh {
+        return Ok(solid.validity().clone());
+    }
     let validity = validate(&read.mesh, &read.validate_options(), &session.progress)?;
     if validity.is_valid() {
         return Ok(validity);
