@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 
 pub use crate::io::FileFormat as AnyFormat;
+use crate::ldi::Inside;
 use crate::orient::OrientMode;
 use crate::pipeline::{DistanceMethod, DistanceSign, SheetSide};
 use crate::vote::VoteRule;
@@ -21,6 +22,27 @@ impl From<OrientChoice> for OrientMode {
         match choice {
             OrientChoice::Auto => Self::Auto,
             OrientChoice::Keep => Self::Keep,
+        }
+    }
+}
+
+/// `--inside`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum InsideChoice {
+    /// Where the surface winds around at least once: overlaps fuse, what faces inwards takes away
+    Positive,
+    /// Where it winds around at all, whichever way it faces
+    Nonzero,
+    /// Where it winds around an odd number of times: every closed surface swaps inside and outside
+    Odd,
+}
+
+impl From<InsideChoice> for Inside {
+    fn from(choice: InsideChoice) -> Self {
+        match choice {
+            InsideChoice::Positive => Self::Positive,
+            InsideChoice::Nonzero => Self::Nonzero,
+            InsideChoice::Odd => Self::Odd,
         }
     }
 }

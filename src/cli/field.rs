@@ -176,6 +176,7 @@ fn options(args: &FieldArgs, scale: &Scale, given: &Given, held: u64) -> Result<
     Ok(Options {
         fit: (!args.no_fit).then_some(FitOptions { simplify, ..usual }),
         orient: args.orient.into(),
+        inside: args.inside.into(),
         collapse: !args.no_collapse,
         // What the lattices and textures of the files take is taken already.
         max_memory: machine::memory_cap(args.max_memory)
@@ -195,6 +196,7 @@ fn resolved(args: &FieldArgs, unit: Option<Unit>, options: &Options, scale: &Sca
         "band": args.band.map(|band| band.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
+        "inside": options.inside,
         "collapse": options.collapse,
         "fit": options.fit.is_some(),
         "simplify_as_given": args.simplify.map(|simplify| simplify.to_string()),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::choices::OrientChoice;
+use super::choices::{InsideChoice, OrientChoice};
 use super::length::{BandChoice, Simplify, parse_size};
 use super::shared_args::VoxelArgs;
 use super::shared_args::{CommonArgs, EXIT_CODES, InputArgs, OutputArgs};
@@ -53,6 +53,9 @@ pub struct FieldArgs {
     /// Which side of the triangles of broken meshes is outside: find out, or trust the file
     #[arg(long, value_enum, default_value_t = OrientChoice::Auto)]
     pub orient: OrientChoice,
+    /// Which part of space is inside where closed surfaces of a broken mesh lie in each other or overlap
+    #[arg(long, value_enum, default_value_t = InsideChoice::Positive)]
+    pub inside: InsideChoice,
     /// Refuse when more memory would be needed (500M, 2G) [default: what is free]
     #[arg(long, value_name = "SIZE", value_parser = parse_size)]
     pub max_memory: Option<u64>,

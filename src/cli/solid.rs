@@ -81,6 +81,7 @@ fn options(
     let options = Options {
         fit: fit(args, &scale, inputs)?,
         orient: args.orient.into(),
+        inside: args.inside.into(),
         vote: args.vote.into(),
         collapse: !args.no_collapse,
         // What the textures take is taken already.
@@ -120,6 +121,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
         "voxel_as_given": args.voxels.voxel.map(|length| length.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
+        "inside": options.inside,
         "vote": options.vote,
         "backend": options.backend,
         "collapse": options.collapse,

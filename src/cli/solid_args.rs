@@ -6,7 +6,7 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, Args};
 
 use super::backend::BackendChoice;
-use super::choices::{OrientChoice, VoteChoice};
+use super::choices::{InsideChoice, OrientChoice, VoteChoice};
 use super::keep::KeepArgs;
 use super::length::{Simplify, parse_size};
 use super::preset::Preset;
@@ -29,6 +29,9 @@ pub struct SolidArgs {
     /// Which side of the triangles is outside: find out, or trust the file
     #[arg(long, value_enum, default_value_t = OrientChoice::Auto)]
     pub orient: OrientChoice,
+    /// Which part of space is inside where closed surfaces lie in each other or overlap
+    #[arg(long, value_enum, default_value_t = InsideChoice::Positive)]
+    pub inside: InsideChoice,
     /// How rays that disagree are settled
     #[arg(long, value_enum, default_value_t = VoteChoice::Winding)]
     pub vote: VoteChoice,

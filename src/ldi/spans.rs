@@ -1,33 +1,40 @@
 //! Counters along each ray give the spans of the result (Bærentzen §3.1 and §5.1).
 //!
 //! A counter for each operand goes up where the ray enters it and down where it leaves; an operand
-//! is inside while its counter is at least 1, and the boolean expression over the operands says
-//! where the result is inside. Only the crossings where that changes are kept. A ray on which a
-//! counter goes negative or does not return to zero is silent: it keeps all its crossings for the
-//! half-rays of the vote, but it has no spans.
+//! is inside while its counter is one of those that its rule, [`Inside`], says, and the boolean expression
+//! over the operands says where the result is inside. Only the crossings where that changes are kept. A ray
+//! on which a counter does not return to zero is silent, and so is, where surfaces have to face outwards, one
+//! on which it goes negative: it keeps all its crossings for the half-rays of the vote, but it has no spans.
 
-use super::{Expression, Hit, Layers};
+use super::{Expression, Hit, Inside, Layers};
 
 /// Crossings of one ray closer together than this (voxels) count as one event, in which entries
 /// come before exits. It absorbs the snapping of vertices to 2⁻¹⁶ h and makes the booleans
 /// regular: facing boxes fuse, and spans and gaps of no length vanish.
 pub const TIE: f64 = 1.0 / 8192.0;
 
-/// Which operand each triangle of the common soup belongs to.
+/// Which operand each triangle of the common soup belongs to, and what counts as inside of an operand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Operands {
     ends: Vec<u32>,
+    /// Which winding numbers are inside, of every operand.
+    pub inside: Inside,
 }
 
 impl Operands {
-    /// Operands with these numbers of triangles, one after another in the soup.
+    /// Operands with these numbers of triangles, one after another in the soup; winding numbers of at least 1 are inside.
     pub fn new(counts: impl IntoIterator<Item = usize>) -> Self {
         let mut end = 0;
         let ends = counts.into_iter().map(|count| {
             end += count as u32;
             end
         });
-        Self { ends: ends.collect() }
+        Self { ends: ends.collect(), inside: Inside::default() }
+    }
+
+    /// The same with other winding numbers inside.
+    pub fn with_inside(self, inside: Inside) -> Self {
+        Self { inside, ..self }
     }
 
     /// Number of operands.
@@ -77,7 +84,7 @@ pub(crate) struct Walk<'a> {
 pub(crate) enum Step {
     /// The counters after the event are fine.
     Fine,
-    /// A counter has gone negative.
+    /// A counter has gone negative, where surfaces have to face outwards.
     Negative,
 }
 
@@ -93,8 +100,8 @@ impl<'a> Walk<'a> {
             let operand = self.operands.of(hit.triangle());
             self.counters[operand] += if hit.entering() { 1 } else { -1 };
         }
-        let negative = event.iter().any(|hit| self.counters[self.operands.of(hit.triangle())] < 0);
-        if negative { Step::Negative } else { Step::Fine }
+        let negative = |hit: &Hit| self.counters[self.operands.of(hit.triangle())] < 0;
+        if self.operands.inside.needs_outward() && event.iter().any(negative) { Step::Negative } else { Step::Fine }
     }
 
     /// Whether all counters are zero; sets them to zero.
@@ -112,7 +119,7 @@ pub(crate) fn event_length(hits: &[Hit]) -> usize {
     hits.iter().take_while(|hit| hit.depth <= limit).count()
 }
 
-/// Whether every counter stays non-negative along `hits` and returns to zero.
+/// Whether every counter returns to zero along `hits`, and stays non-negative where surfaces have to face outwards.
 pub(crate) fn is_balanced(hits: &[Hit], walk: &mut Walk<'_>) -> bool {
     let mut rest = hits;
     while !rest.is_empty() {
@@ -126,19 +133,32 @@ pub(crate) fn is_balanced(hits: &[Hit], walk: &mut Walk<'_>) -> bool {
     walk.finish()
 }
 
-/// Whether the crossings, all of one operand, balance.
-pub(crate) fn balanced_alone(hits: &[Hit]) -> bool {
-    let mut counter = 0;
+/// What the crossings of one operand on one ray say of how its surfaces face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Facing {
+    /// All of them outwards, or inwards where others are around.
+    Right,
+    /// The counter returns to zero, but it is negative on the way.
+    Inwards,
+    /// The counter does not return to zero.
+    Open,
+}
+
+/// How the surfaces face that a ray crosses; the crossings are all of one operand.
+pub(crate) fn facing(hits: &[Hit]) -> Facing {
+    let (mut counter, mut negative) = (0, false);
     let mut rest = hits;
     while !rest.is_empty() {
         let (event, others) = rest.split_at(event_length(rest));
         counter += event.iter().map(|hit| if hit.entering() { 1 } else { -1 }).sum::<i32>();
-        if counter < 0 {
-            return false;
-        }
+        negative |= counter < 0;
         rest = others;
     }
-    counter == 0
+    match (counter, negative) {
+        (0, false) => Facing::Right,
+        (0, true) => Facing::Inwards,
+        _ => Facing::Open,
+    }
 }
 
 /// Rays with crossings, and how many of them do not balance.
@@ -146,7 +166,7 @@ pub(crate) fn balanced_alone(hits: &[Hit]) -> bool {
 pub struct Balance {
     /// Rays with at least one crossing.
     pub occupied: usize,
-    /// Of these, rays on which an operand's counter goes negative or does not return to zero.
+    /// Of these, rays on which an operand's counter does not return to zero, or is negative where surfaces have to face outwards.
     pub unbalanced: usize,
 }
 
@@ -203,6 +223,7 @@ fn keep_changes(
     inside: &mut [bool],
     kept: &mut Vec<Hit>,
 ) -> bool {
+    let operands = walk.operands;
     let mut was = false;
     let mut rest = hits;
     inside.fill(false);
@@ -213,8 +234,8 @@ fn keep_changes(
             return false;
         }
         for hit in event {
-            let operand = walk.operands.of(hit.triangle());
-            inside[operand] = walk.counters[operand] >= 1;
+            let operand = operands.of(hit.triangle());
+            inside[operand] = operands.inside.holds(walk.counters[operand]);
         }
         let now = expression.evaluate(inside);
         if now != was {

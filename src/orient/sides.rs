@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::PatchId;
-use crate::ldi::{Hit, Layers, Operands, balanced_alone};
+use crate::ldi::{Facing, Hit, Inside, Layers, Operands, facing};
 use crate::progress::{Progress, Stopped};
 
 /// At most this many rounds of voting: each turns over the patches that the rays vote against,
@@ -24,6 +24,10 @@ struct Ballot {
 /// crossing votes to keep its patch: overlapping bodies and voids in hollow ones are fine. Where
 /// they do not, but are even in number, enter, leave, enter, leave… is expected, and each crossing
 /// votes for what that says of it. An odd number of crossings has no say.
+///
+/// Where surfaces count whichever way they face ([`Inside::needs_outward`]), crossings that only say that all of it faces inwards have no say
+/// either: a closed surface stays as it is, and a patch is turned over only where the surface that it is a part of faces
+/// the other way.
 pub fn orient_sides(
     layers: &mut [Layers],
     patch_of: &[PatchId],
@@ -69,27 +73,30 @@ fn poll(layers: &Layers, patch_of: &[PatchId], patch_count: usize, operands: &Op
             continue;
         }
         if operands.count() == 1 {
-            vote(hits, patch_of, &mut ballots);
+            vote(hits, operands.inside, patch_of, &mut ballots);
             continue;
         }
         for operand in 0..operands.count() {
             own.clear();
             own.extend(hits.iter().filter(|hit| operands.of(hit.triangle()) == operand));
-            vote(&own, patch_of, &mut ballots);
+            vote(&own, operands.inside, patch_of, &mut ballots);
         }
     }
     ballots
 }
 
 /// Adds the votes of one operand's crossings on one ray.
-fn vote(hits: &[Hit], patch_of: &[PatchId], ballots: &mut [Ballot]) {
+fn vote(hits: &[Hit], inside: Inside, patch_of: &[PatchId], ballots: &mut [Ballot]) {
     if hits.len() % 2 == 1 {
         return;
     }
-    let balanced = balanced_alone(hits);
+    let facing = facing(hits);
+    if facing == Facing::Inwards && !inside.needs_outward() {
+        return;
+    }
     for (n, hit) in hits.iter().enumerate() {
         let ballot = &mut ballots[patch_of[hit.triangle() as usize].index()];
-        if balanced || hit.entering() == (n % 2 == 0) {
+        if facing == Facing::Right || hit.entering() == (n % 2 == 0) {
             ballot.keep += 1;
         } else {
             ballot.flip += 1;

@@ -66,7 +66,8 @@ impl Apart {
             true => contacts(&mesh, &shells, progress)?,
             false => Contacts { touched: vec![false; soup.mesh.triangles.len()], pairs: Vec::new() },
         };
-        let asked = StandingOptions { expression, operands: soup.operands.count(), orient: options.orient };
+        let (operands, inside) = (soup.operands.count(), soup.operands.inside);
+        let asked = StandingOptions { expression, operands, orient: options.orient, inside };
         let truth = match worth_looking {
             true => standing(&mesh, &shells, &contacts, &asked, progress)?,
             false => vec![Fate::Open; shells.list.len()],
@@ -153,7 +154,7 @@ impl Apart {
         let triangles = left.iter().map(|&t| soup.mesh.triangles[t]).collect();
         Soup {
             mesh: TriMesh { positions: soup.mesh.positions.clone(), triangles },
-            operands: Operands::new(counts),
+            operands: Operands::new(counts).with_inside(soup.operands.inside),
             patch_of: left.iter().map(|&t| soup.patch_of[t]).collect(),
             patch_count: soup.patch_count,
             reports,

@@ -69,7 +69,7 @@ fn evaluate(
 
     let mut stages = Stages::new(progress);
     stages.begin(Stage::Orient)?;
-    let soup = Soup::of(&meshes, options.orient, progress)?;
+    let soup = Soup::of(&meshes, options.orient, progress)?.with_inside(options.inside);
     stages.begin(Stage::Shells)?;
     let mut apart = Apart::find(&soup, expression, options, progress)?;
     let standing = apart.surface(&soup, &meshes, (options, &classes), h, progress)?;
@@ -85,6 +85,7 @@ fn evaluate(
             }
         },
     };
-    let draft: Draft = account::finished(draft, &apart, stages);
+    let mut draft: Draft = account::finished(draft, &apart, stages);
+    draft.report.inside = options.inside;
     Ok(draft.counted(&meshes).global(&frame).judged(operands, progress)?)
 }

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::backend::Backend;
 use crate::fit::FitOptions;
+use crate::ldi::Inside;
 use crate::orient::OrientMode;
 use crate::sdf::{RobustOptions, Trust};
 use crate::vote::VoteRule;
@@ -34,6 +35,8 @@ pub struct Options {
     pub voxel: VoxelSize,
     /// Orientation of the input.
     pub orient: OrientMode,
+    /// Which winding numbers of an operand are inside.
+    pub inside: Inside,
     /// Voting rule.
     pub vote: VoteRule,
     /// The distance field near the surface; `None`: as the voting rule needs it.
@@ -92,6 +95,7 @@ impl Options {
         Self {
             voxel,
             orient: OrientMode::Auto,
+            inside: Inside::default(),
             vote: VoteRule::default(),
             robust: None,
             collapse,

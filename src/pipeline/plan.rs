@@ -166,7 +166,7 @@ pub(super) fn of_offsets(mesh: &TriMesh, lattice: &Lattice, options: &SurfaceOpt
 /// What needs voxels of the operands: all but the shells that stand as they are, or are left out. And how many triangles touch others.
 fn rest(operands: &[&TriMesh], options: &Options) -> Result<(TriMesh, usize), BooleanError> {
     let progress = Progress::none();
-    let soup = Soup::of(operands, options.orient, &progress)?;
+    let soup = Soup::of(operands, options.orient, &progress)?.with_inside(options.inside);
     // Which shells stand does not depend on the expression, only what becomes of them does.
     let apart = Apart::find(&soup, &Expression::union(operands.len()), options, &progress)?;
     Ok((apart.rest(&soup).mesh, apart.touching()))

@@ -82,7 +82,7 @@ pub fn thickness(input: &TriMesh, options: &Options, progress: &Progress) -> Res
     let lattice = sizing::lattice(&bounds, options.voxel)?;
     plan::check_limits(&[&mesh], &lattice, &options.surface(), plan::Offsets::default())?;
     progress.stage(Stage::Orient)?;
-    let soup = Soup::of(&[&mesh], options.orient, progress)?;
+    let soup = Soup::of(&[&mesh], options.orient, progress)?.with_inside(options.inside);
     progress.stage(Stage::Ldi)?;
     let cast = Cast::on_cpu(soup, &lattice, options.orient, progress)?;
     progress.stage(Stage::Spans)?;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::boxes::Boxes;
 use super::winding::{around, solid_angle};
 use super::{Contacts, Kind, Shell, Shells};
-use crate::ldi::Expression;
+use crate::ldi::{Expression, Inside};
 use crate::mesh::TriMesh;
 use crate::mesh::predicates::scale_of_mesh;
 use crate::orient::OrientMode;
@@ -21,6 +21,8 @@ pub struct StandingOptions<'a> {
     pub operands: usize,
     /// Whether shells that face the wrong way are turned over.
     pub orient: OrientMode,
+    /// Which winding numbers of an operand are inside.
+    pub inside: Inside,
 }
 
 /// What becomes of a shell.
@@ -55,7 +57,8 @@ const WHOLE: f64 = 0.2;
 
 /// The fate of each shell. A shell stays as it is when it is closed and touches nothing, when nothing that is open lies inside of it, and
 /// when the winding numbers around it are whole and, by operand, never negative; where they are negative, and nothing open lies
-/// around it, all shells that are inside each other take turns: the outermost faces outwards, the next ones inwards, and so on.
+/// around it, all shells that are inside each other take turns: the outermost faces outwards, the next ones inwards, and so on. Where
+/// surfaces count whichever way they face ([`Inside::needs_outward`]), negative numbers are as good as others, and no shell is turned over.
 ///
 /// # Errors
 /// Only a stop.
@@ -175,7 +178,7 @@ impl Scene<'_> {
         let is_right = |k: usize| {
             others(k).map(|others| {
                 let out = others + same(k).map(|other| Self::sign(shell(other))).sum::<i32>();
-                out.min(out + Self::sign(shell(k))) >= 0
+                !self.options.inside.needs_outward() || out.min(out + Self::sign(shell(k))) >= 0
             })
         };
         let root = |k: usize| same(k).min_by_key(|&other| places[other].within.len()).unwrap_or(k);
@@ -206,7 +209,7 @@ impl Scene<'_> {
             winding[self.shells[self.free[other]].operand] += sign(other)?;
         }
         let is_inside = |winding: &[i32]| {
-            let inside: Vec<bool> = winding.iter().map(|&w| w >= 1).collect();
+            let inside: Vec<bool> = winding.iter().map(|&w| self.options.inside.holds(w)).collect();
             self.options.expression.evaluate(&inside)
         };
         let outer = is_inside(&winding);
@@ -223,7 +226,7 @@ impl Scene<'_> {
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Tree {
-    /// Some winding number in it is negative or not known.
+    /// Some winding number in it is not known, or negative where it must not be.
     wrong: bool,
     /// Something open lies around it or in it.
     unknown: bool,

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::lattice::Lattice;
-use crate::ldi::{Layers, Operands};
+use crate::ldi::{Inside, Layers, Operands};
 use crate::mesh::{Plane, TriMesh};
 use crate::orient::{OrientMode, OrientReport, PatchId, clean, orient_patches, orient_sides};
 use crate::progress::{Progress, Stopped};
@@ -78,6 +78,12 @@ impl Soup {
         }
         soup.operands = Operands::new(counts);
         Ok(soup)
+    }
+
+    /// The same with other winding numbers inside.
+    pub fn with_inside(mut self, inside: Inside) -> Self {
+        self.operands.inside = inside;
+        self
     }
 
     /// One operand that is taken as it is: its triangles keep their numbers and sides.

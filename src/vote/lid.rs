@@ -1,4 +1,5 @@
-//! Where the surface over a hole crosses a lattice edge: the level ½ of the winding number.
+//! Where the surface over a hole crosses a lattice edge: the level ½ of the winding number, or another one between whole numbers of
+//! which one is inside and the other is not.
 
 use glam::{DVec3, IVec3};
 
@@ -35,7 +36,7 @@ pub struct Lid {
 
 impl Winding<'_> {
     /// Where the solid of `expression` ends on the lattice edge from voxel `inside` to voxel
-    /// `outside` because the winding number of an operand passes ½ there; of several such places the
+    /// `outside` because the winding number of an operand passes ½ there, or another level that its rule has; of several such places the
     /// middle one. `None` where no operand does, where a triangle makes the change, and everywhere
     /// for closed operands; also, rarely, where the edge passes several rims closer than h/16 together.
     ///
@@ -78,7 +79,7 @@ impl Winding<'_> {
     ) -> Result<(Vec<bool>, Vec<bool>), Stopped> {
         let side = |(operand, tree): (usize, &super::WindingTree)| {
             let passing = together.iter().find(|passage| passage.operand == operand);
-            // A passing number may also be 1½ or -½.
+            // A passing number may also be 1½ or -½: it depends on the rule whether that changes anything.
             let above = match (passing, &views[operand]) {
                 (Some(_), _) => 0.0,
                 (None, Some(view)) => view.above(p),
@@ -86,8 +87,11 @@ impl Winding<'_> {
             };
             let w = tree.complete(above, p);
             match passing {
-                Some(passage) if w == 0.5 => (passage.leaving, !passage.leaving),
-                _ => (w > 0.5, w > 0.5),
+                Some(passage) => {
+                    let [low, high] = [w - 0.25, w + 0.25].map(|w| self.rule().holds_near(w));
+                    if passage.leaving { (high, low) } else { (low, high) }
+                }
+                None => (self.rule().holds_near(w), self.rule().holds_near(w)),
             }
         };
         Ok(self.trees()?.iter().enumerate().map(side).unzip())

@@ -147,13 +147,13 @@ impl Jury<'_> {
     fn half_ray_inside(&self, half: &[Hit], entering: i32) -> bool {
         let signed = |hit: &Hit| if hit.entering() { entering } else { -entering };
         if self.operands.count() == 1 {
-            return self.expression.evaluate(&[half.iter().map(signed).sum::<i32>() >= 1]);
+            return self.expression.evaluate(&[self.operands.inside.holds(half.iter().map(signed).sum())]);
         }
         let mut counters = vec![0i32; self.operands.count()];
         for hit in half {
             counters[self.operands.of(hit.triangle())] += signed(hit);
         }
-        let inside: Vec<bool> = counters.iter().map(|&c| c >= 1).collect();
+        let inside: Vec<bool> = counters.iter().map(|&counter| self.operands.inside.holds(counter)).collect();
         self.expression.evaluate(&inside)
     }
 }

@@ -1,6 +1,6 @@
 //! The generalised winding number of a soup (Jacobson et al. 2013). It decides the voxels that the
 //! rays are not sure of: over a flat hole its level ½ is the flat lid, and it does not mind stray
-//! triangles.
+//! triangles. What counts as inside of whole numbers counts for the nearest one here ([`Inside::holds_near`]).
 
 use std::sync::OnceLock;
 
@@ -10,7 +10,7 @@ use super::block::Block;
 use super::dipoles::WindingTree;
 use super::rim::Rim;
 use crate::lattice::Lattice;
-use crate::ldi::{Expression, Operands};
+use crate::ldi::{Expression, Inside, Operands};
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
 
@@ -39,7 +39,7 @@ impl<'a> Winding<'a> {
     }
 
     /// Decides voxels of the block of 4³ voxels from `base` on: calls `decide(k, inside)` for each
-    /// `k` of `wanted`, offsets in the block. An operand is inside above a winding number of ½.
+    /// `k` of `wanted`, offsets in the block. An operand is inside where the whole number nearest to its winding number is.
     pub fn decide(
         &self,
         base: IVec3,
@@ -51,14 +51,20 @@ impl<'a> Winding<'a> {
         let centre = model(DVec3::splat(1.5));
         let radius = 1.5 * 3f64.sqrt() * self.lattice.h;
         let operands = self.trees()?.iter().zip(self.rims()?);
+        let rule = self.rule();
         let blocks: Vec<Block<'_>> = operands.map(|(tree, rim)| Block::new(tree, rim, centre, radius)).collect();
         let mut inside = vec![false; blocks.len()];
         for &offset in wanted {
             let p = model(offset.as_dvec3());
-            inside.iter_mut().zip(&blocks).for_each(|(inside, block)| *inside = block.is_inside(p));
+            inside.iter_mut().zip(&blocks).for_each(|(inside, block)| *inside = block.is_inside(p, rule));
             decide(offset, expression.evaluate(&inside));
         }
         Ok(())
+    }
+
+    /// What counts as inside of whole winding numbers.
+    pub(super) fn rule(&self) -> Inside {
+        self.operands.inside
     }
 
     pub(super) fn trees(&self) -> Result<&[WindingTree], Stopped> {

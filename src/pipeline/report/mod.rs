@@ -18,6 +18,7 @@ use serde::Serialize;
 
 use crate::backend::BackendReport;
 use crate::fit::FitReport;
+use crate::ldi::Inside;
 use crate::orient::OrientReport;
 use crate::progress::Stage;
 use crate::vote::VoteReport;
@@ -26,6 +27,8 @@ use crate::vote::VoteReport;
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Report {
+    /// Which winding numbers of an operand were inside.
+    pub inside: Inside,
     /// Voxel spacing, model units.
     pub voxel: f64,
     /// Voxels along x, y, z; zero without a lattice.
