@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::ValueEnum;
 use serde_json::json;
 
-use super::choices::SignChoice;
+use super::choices::{InsideChoice, SignChoice};
 use super::entries::OutputEntry;
 use super::epilogue;
 use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
@@ -107,10 +107,15 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
                 .hint("--method exact takes any --sign"));
         }
         Some(sign) => sign.into(),
-        None => DistanceSign::suited(validity, method),
+        None => DistanceSign::suited(validity, method, args.inside.into()),
     };
-    let (orient, max_memory) = (args.orient.into(), machine::memory_cap(args.max_memory));
-    Ok(DistanceOptions { voxel, band, method, sign, orient, max_memory, backend: args.backend.into() })
+    if args.inside != InsideChoice::Positive && (closed || sign == DistanceSign::Pseudonormal && args.sign.is_some()) {
+        return Err(Failure::usage("by pseudonormals the nearest triangle tells the side; --inside cannot change that")
+            .hint("--sign votes, winding and levels go by --inside"));
+    }
+    let (orient, inside, max_memory) =
+        (args.orient.into(), args.inside.into(), machine::memory_cap(args.max_memory));
+    Ok(DistanceOptions { voxel, band, method, sign, orient, inside, max_memory, backend: args.backend.into() })
 }
 
 /// Refuses another sign for what goes by pseudonormals.
@@ -143,6 +148,7 @@ fn resolved(
         "method": options.method,
         "sign": options.sign,
         "orient": format!("{:?}", options.orient).to_lowercase(),
+        "inside": options.inside,
         "out_format": format.map(|format| format.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
         "threads": rayon::current_num_threads(),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::backend::BackendChoice;
-use super::choices::{MethodChoice, OrientChoice, SignChoice};
+use super::choices::{InsideChoice, MethodChoice, OrientChoice, SignChoice};
 use super::length::{BandChoice, parse_size};
 use super::shared_args::{CommonArgs, InputArgs, VoxelArgs};
 use crate::io::GridFormat;
@@ -37,6 +37,9 @@ pub struct SdfArgs {
     /// Which side of the triangles is outside, unless the sign is by pseudonormals: find out, or trust the file
     #[arg(long, value_enum, default_value_t = OrientChoice::Auto)]
     pub orient: OrientChoice,
+    /// Which part of space is inside where closed surfaces lie in each other or overlap, unless the sign is by pseudonormals
+    #[arg(long, value_enum, default_value_t = InsideChoice::Positive)]
+    pub inside: InsideChoice,
     /// Format of the output, when its name should not decide
     #[arg(long, value_name = "FORMAT")]
     pub out_format: Option<GridFormat>,

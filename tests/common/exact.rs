@@ -2,6 +2,7 @@
 
 use glam::{DVec3, IVec3};
 use meshwright::lattice::{DistanceField, Grid, Lattice, Slot};
+use meshwright::ldi::Inside;
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
 use meshwright::sdf::Levels;
@@ -199,7 +200,7 @@ pub fn voxels(lattice: &Lattice) -> impl Iterator<Item = IVec3> + use<> {
 /// Compares the sides by levels with those by normals for all voxels that are off the surface; returns how many are inside.
 pub fn same_sides(name: &str, mesh: &TriMesh, around: &Lattice, band: Band) -> usize {
     let by_normals = field(mesh, around, Sign::Pseudonormal, band).grid;
-    let levels = Levels::of(mesh, around, &Progress::none()).expect("levels");
+    let levels = Levels::of(mesh, around, Inside::Positive, &Progress::none()).expect("levels");
     let by_levels = field(mesh, around, Sign::Levels(&levels), band).grid;
     let mut inside = 0;
     for v in voxels(around) {
@@ -217,7 +218,7 @@ pub fn threads_leave_levels_alone(mut mesh: TriMesh) {
     let around = lattice(&mesh, size / 100.0, 2);
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| Levels::of(&mesh, &around, &Progress::none()).expect("levels"))
+        pool.install(|| Levels::of(&mesh, &around, Inside::Positive, &Progress::none()).expect("levels"))
     };
     assert!(with(1) == with(3));
 }

@@ -252,7 +252,7 @@ impl Making<'_> {
     ) -> Result<DistanceField, DistanceError> {
         let (progress, orient, lattice) = (self.progress, self.options.orient, &self.lattice);
         stages.begin(Stage::Orient)?;
-        let soup = Soup::of(&[input], orient, progress)?;
+        let soup = Soup::of(&[input], orient, progress)?.with_inside(self.options.inside);
         stages.begin(Stage::Ldi)?;
         let mut cast = Cast::on_cpu(soup, lattice, orient, progress)?;
         report.orient = cast.soup.reports.first().cloned();
@@ -266,7 +266,7 @@ impl Making<'_> {
             (DistanceMethod::Exact, DistanceSign::Levels) => {
                 cast.layers.clear();
                 stages.begin(Stage::Levels)?;
-                let levels = Levels::of(&cast.soup.mesh, lattice, progress)?;
+                let levels = Levels::of(&cast.soup.mesh, lattice, self.options.inside, progress)?;
                 stages.begin(Stage::Distance)?;
                 return self.exact(&cast.soup.mesh, Sign::Levels(&levels));
             }

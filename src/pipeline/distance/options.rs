@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::backend::Backend;
+use crate::ldi::Inside;
 use crate::mesh::Validity;
 use crate::orient::OrientMode;
 use crate::pipeline::VoxelSize;
@@ -57,9 +58,11 @@ impl DistanceMethod {
 }
 
 impl DistanceSign {
-    /// The sign that suits a mesh of this state: pseudonormals where they are exact, votes where the mesh is a soup.
-    pub fn suited(validity: &Validity, method: DistanceMethod) -> Self {
-        let exact = validity.is_valid() && method == DistanceMethod::Exact;
+    /// The sign that suits a mesh of this state: pseudonormals where they are exact, votes where the mesh is a soup, or where several
+    /// bodies may mean something else by a rule of their own.
+    pub fn suited(validity: &Validity, method: DistanceMethod, inside: Inside) -> Self {
+        let faces = inside.needs_outward() || validity.bodies == 1;
+        let exact = validity.is_valid() && faces && method == DistanceMethod::Exact;
         if exact || method.is_for_closed() { Self::Pseudonormal } else { Self::Votes }
     }
 }
@@ -80,6 +83,8 @@ pub struct DistanceOptions {
     pub backend: Backend,
     /// Orientation of the input, unless the sign is by pseudonormals.
     pub orient: OrientMode,
+    /// Which winding numbers are inside, unless the sign is by pseudonormals.
+    pub inside: Inside,
     /// Upper bound for the working memory, bytes; `None`: no bound.
     pub max_memory: Option<u64>,
 }
@@ -95,6 +100,7 @@ impl DistanceOptions {
             sign: DistanceSign::Votes,
             backend: Backend::default(),
             orient: OrientMode::Auto,
+            inside: Inside::default(),
             max_memory: None,
         }
     }

@@ -123,7 +123,9 @@ impl<'a> FieldBuilder<'a> {
             return Ok(self.exact(operand, given.mesh));
         }
         let options = ValidateOptions { self_intersections: true, weld: true };
-        if validate(given.mesh, &options, self.progress)?.is_valid() {
+        let validity = validate(given.mesh, &options, self.progress)?;
+        // Of one body all rules say the same; of several they may not.
+        if validity.is_valid() && (self.options.inside.needs_outward() || validity.bodies == 1) {
             self.valid.insert(operand);
             return Ok(self.exact(operand, given.mesh));
         }
@@ -156,6 +158,7 @@ impl<'a> FieldBuilder<'a> {
             sign,
             backend: self.options.backend,
             orient: self.options.orient,
+            inside: self.options.inside,
             max_memory: self.options.max_memory,
         };
         let found = distance(mesh, &options, self.progress)?;

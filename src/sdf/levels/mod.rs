@@ -4,7 +4,7 @@
 //! edge of the mesh to another. At an edge with as many triangles one way as the other, as many segments come as go, so
 //! on a closed surface the contours are closed, whatever their coordinates. Elsewhere, at the rim of a hole or at a
 //! crack, they end; each end is joined by a straight segment with a beginning, the nearest pairs of a plane first. A voxel is inside
-//! where the closed contours wind around it at least once.
+//! where the closed contours wind around it at least once, or as often as another rule says ([`Inside`]).
 //!
 //! A vertex on a plane counts as above it, and likewise for rows and voxels, as if the lattice were moved by
 //! (−ε³, −ε², −ε): nothing ever lies on a plane.
@@ -16,6 +16,7 @@ use glam::{DVec2, DVec3, IVec3};
 use rayon::prelude::*;
 
 use crate::lattice::{BRICK, Lattice, brick_of};
+use crate::ldi::Inside;
 use crate::mesh::TriMesh;
 use crate::mesh::edges::Edges;
 use crate::mesh::weld::{first_of_equal, has_repeated_index};
@@ -69,11 +70,16 @@ fn counts(lattice: &Lattice) -> IVec3 {
 
 impl Levels {
     /// Finds the inside of the oriented surface `mesh`, for the voxels of `lattice` and of the bricks at its end. Vertices of
-    /// equal coordinates are one.
+    /// equal coordinates are one. `inside` says how often contours have to wind around a voxel.
     ///
     /// # Errors
     /// See [`LevelsError`].
-    pub fn of(mesh: &TriMesh, lattice: &Lattice, progress: &Progress) -> Result<Self, LevelsError> {
+    pub fn of(
+        mesh: &TriMesh,
+        lattice: &Lattice,
+        inside: Inside,
+        progress: &Progress,
+    ) -> Result<Self, LevelsError> {
         let counts = counts(lattice);
         let surface = CutSurface::of(mesh, lattice);
         progress.check()?;
@@ -87,7 +93,7 @@ impl Levels {
             let cut = surface.cut_by(first, planes.len() / (width * height));
             planes.par_chunks_mut(width * height).zip(&cut).enumerate().try_for_each(|(k, (plane, cut))| {
                 progress.check()?;
-                scan::fill(plane, width, surface.contours((first + k) as f64, cut));
+                scan::fill(plane, width, surface.contours((first + k) as f64, cut), inside);
                 Ok::<_, Stopped>(())
             })?;
         }

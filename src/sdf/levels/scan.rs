@@ -1,6 +1,7 @@
 //! Scan conversion of the slice contours of one plane.
 
 use super::Segment;
+use crate::ldi::Inside;
 
 /// Where a slice contour crosses a row.
 struct RowCrossing {
@@ -10,8 +11,8 @@ struct RowCrossing {
     turn: i32,
 }
 
-/// Sets the bits that closed contours wind around in the positive sense. `plane` has rows of `width` bytes.
-pub(super) fn fill(plane: &mut [u8], width: usize, contours: Vec<Segment>) {
+/// Sets the bits that closed contours wind around as often as the rule says. `plane` has rows of `width` bytes.
+pub(super) fn fill(plane: &mut [u8], width: usize, contours: Vec<Segment>, inside: Inside) {
     let mut crossings = Vec::new();
     contours.into_iter().for_each(|segment| cross(segment, plane.len() / width, &mut crossings));
     crossings.sort_unstable_by(|a, b| a.row.cmp(&b.row).then(a.x.total_cmp(&b.x)));
@@ -21,7 +22,7 @@ pub(super) fn fill(plane: &mut [u8], width: usize, contours: Vec<Segment>) {
         let mut winding = 0;
         for pair in row.windows(2) {
             winding += pair[0].turn;
-            if winding > 0 {
+            if inside.holds(winding) {
                 set(bits, after(pair[0].x, width), after(pair[1].x, width));
             }
         }
@@ -68,6 +69,8 @@ mod tests {
     use glam::DVec2;
     use proptest::prelude::*;
 
+    const RULES: [Inside; 3] = [Inside::Positive, Inside::Nonzero, Inside::Odd];
+
     fn contour(points: &[[f64; 2]]) -> Vec<Segment> {
         (0..points.len()).map(|n| [points[n], points[(n + 1) % points.len()]].map(DVec2::from)).collect()
     }
@@ -77,16 +80,22 @@ mod tests {
     }
 
     proptest! {
-        /// Any closed contour, also one that crosses itself: a voxel's bit is set where the turning angle of the contour is positive.
+        /// Any closed contour, also one that crosses itself: a voxel's bit is set where the contour turns around it as often as the rule says.
         #[test]
         fn bits_are_winding_numbers(points in prop::collection::vec([-3.0..27.0, -3.0..27.0], 3..9)) {
-            let mut plane = vec![0; 3 * 24];
-            fill(&mut plane, 3, contour(&points));
+            let planes = RULES.map(|inside| {
+                let mut plane = vec![0; 3 * 24];
+                fill(&mut plane, 3, contour(&points), inside);
+                plane
+            });
             for (x, y) in (0..24).flat_map(|x| (0..24).map(move |y| (x, y))) {
                 let p = DVec2::new(x as f64, y as f64);
                 let turned = |[a, b]: Segment| (a - p).perp_dot(b - p).atan2((a - p).dot(b - p));
                 let angle: f64 = contour(&points).into_iter().map(turned).sum();
-                prop_assert_eq!(is_set(&plane, 3, x, y), angle > 1.0, "{} {}", x, y);
+                let turns = (angle / std::f64::consts::TAU).round() as i32;
+                for (plane, inside) in planes.iter().zip(RULES) {
+                    prop_assert_eq!(is_set(plane, 3, x, y), inside.holds(turns), "{:?} {} {}", inside, x, y);
+                }
             }
         }
     }
@@ -97,7 +106,7 @@ mod tests {
             ([[2.0, 1.0], [9.0, 1.0], [9.0, 5.0], [2.0, 5.0]], [[9.0, 1.0], [14.0, 1.0], [14.0, 5.0], [9.0, 5.0]]);
         let planes = [left, right].map(|points| {
             let mut plane = vec![0; 2 * 8];
-            fill(&mut plane, 2, contour(&points));
+            fill(&mut plane, 2, contour(&points), Inside::Positive);
             plane
         });
         for (x, y) in (0..16).flat_map(|x| (0..8).map(move |y| (x, y))) {

@@ -2,6 +2,7 @@
 
 use glam::{DVec3, IVec3};
 use meshwright::lattice::{Grid, Lattice};
+use meshwright::ldi::Inside;
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
 use meshwright::sdf::Levels;
@@ -12,7 +13,7 @@ use crate::common::exact::{distance_to, lattice, same_sides, threads_leave_level
 use crate::common::shapes::{self, ball, hard, knot, scan};
 
 fn levels(mesh: &TriMesh, lattice: &Lattice) -> Levels {
-    Levels::of(mesh, lattice, &Progress::none()).expect("levels")
+    Levels::of(mesh, lattice, Inside::Positive, &Progress::none()).expect("levels")
 }
 
 fn field(mesh: &TriMesh, lattice: &Lattice, sign: Sign<'_>, band: Band) -> Grid<f32> {
