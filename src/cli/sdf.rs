@@ -110,11 +110,12 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
         None => DistanceSign::suited(validity, method, args.inside.into()),
     };
     if args.inside != InsideChoice::Positive && (closed || sign == DistanceSign::Pseudonormal && args.sign.is_some()) {
-        return Err(Failure::usage("by pseudonormals the nearest triangle tells the side; --inside cannot change that")
-            .hint("--sign votes, winding and levels go by --inside"));
+        return Err(Failure::usage(
+            "by pseudonormals the nearest triangle tells the side; --inside cannot change that",
+        )
+        .hint("--sign votes, winding and levels go by --inside"));
     }
-    let (orient, inside, max_memory) =
-        (args.orient.into(), args.inside.into(), machine::memory_cap(args.max_memory));
+    let (orient, inside, max_memory) = (args.orient.into(), args.inside.into(), machine::memory_cap(args.max_memory));
     Ok(DistanceOptions { voxel, band, method, sign, orient, inside, max_memory, backend: args.backend.into() })
 }
 

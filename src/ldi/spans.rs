@@ -279,6 +279,33 @@ mod tests {
     }
 
     #[test]
+    fn a_ray_below_zero_is_silent_only_where_surfaces_have_to_face_outwards() {
+        // A shell inside out; one in another, both inside out; and two that overlap, one of them inside out.
+        let [alone, nested, crossing] = [
+            &[(1., 0, false), (2., 1, true)][..],
+            &[(1., 0, false), (2., 1, false), (3., 2, true), (4., 3, true)],
+            &[(1., 0, true), (2., 1, false), (3., 2, false), (4., 3, true)],
+        ];
+        for (hits, nonzero, odd) in [
+            (alone, &[1., 2.][..], &[1., 2.][..]),
+            (nested, &[1., 4.], &[1., 2., 3., 4.]),
+            (crossing, &[1., 2., 3., 4.], &[1., 2., 3., 4.]),
+        ] {
+            let by = |inside| {
+                let operands = Operands::new([4]).with_inside(inside);
+                spans(Layers::of_one_ray(hits), &operands, &Expression::Operand(0))
+            };
+            assert!(by(Inside::Positive).is_silent(0));
+            for (inside, expected) in [(Inside::Nonzero, nonzero), (Inside::Odd, odd)] {
+                let s = by(inside);
+                assert_eq!((s.is_silent(0), &depths(&s)[..]), (false, expected), "{inside:?}");
+                let enters: Vec<bool> = s.layers.hits.iter().map(|hit| hit.entering()).collect();
+                assert_eq!(enters, (0..expected.len()).map(|n| n % 2 == 0).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
     fn a_ray_that_does_not_balance_keeps_its_crossings_and_is_silent() {
         let one = Operands::new([3]);
         for hits in

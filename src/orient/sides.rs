@@ -10,11 +10,15 @@ use crate::progress::{Progress, Stopped};
 /// and the next sees the effect. Two settle every file tried.
 const ROUNDS: usize = 4;
 
+/// What a crossing's vote counts. Those that say less count 1: a cube of which one of six sides is half open has a sixth of its rays through the hole,
+/// and half a cube shares half of its rays with the other half.
+const VOICE: u64 = 4;
+
 /// Votes of the rays on one patch.
 #[derive(Debug, Clone, Copy, Default)]
 struct Ballot {
-    keep: u32,
-    flip: u32,
+    keep: u64,
+    flip: u64,
 }
 
 /// Decides for each patch whether it has to be turned over, and turns the crossings of the turned
@@ -25,9 +29,9 @@ struct Ballot {
 /// they do not, but are even in number, enter, leave, enter, leave… is expected, and each crossing
 /// votes for what that says of it. An odd number of crossings has no say.
 ///
-/// Where surfaces count whichever way they face ([`Inside::needs_outward`]), crossings that only say that all of it faces inwards have no say
-/// either: a closed surface stays as it is, and a patch is turned over only where the surface that it is a part of faces
-/// the other way.
+/// Where surfaces count whichever way they face ([`Inside::needs_outward`]), crossings that only say that all of it faces inwards vote to keep
+/// their patches, but with a quarter of a voice: a closed surface stays as it is, also when some rays pass through holes of it, and a patch
+/// is turned over where more rays see that the surface that it is a part of faces the other way.
 pub fn orient_sides(
     layers: &mut [Layers],
     patch_of: &[PatchId],
@@ -91,15 +95,14 @@ fn vote(hits: &[Hit], inside: Inside, patch_of: &[PatchId], ballots: &mut [Ballo
         return;
     }
     let facing = facing(hits);
-    if facing == Facing::Inwards && !inside.needs_outward() {
-        return;
-    }
+    let all_inwards = facing == Facing::Inwards && !inside.needs_outward();
+    let voice = if all_inwards { 1 } else { VOICE };
     for (n, hit) in hits.iter().enumerate() {
         let ballot = &mut ballots[patch_of[hit.triangle() as usize].index()];
-        if facing == Facing::Right || hit.entering() == (n % 2 == 0) {
-            ballot.keep += 1;
+        if all_inwards || facing == Facing::Right || hit.entering() == (n % 2 == 0) {
+            ballot.keep += voice;
         } else {
-            ballot.flip += 1;
+            ballot.flip += voice;
         }
     }
 }

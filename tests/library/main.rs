@@ -15,6 +15,7 @@ mod fit;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod hollow;
+mod inside;
 mod io;
 mod keep;
 mod mesh;

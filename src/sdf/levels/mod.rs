@@ -74,12 +74,7 @@ impl Levels {
     ///
     /// # Errors
     /// See [`LevelsError`].
-    pub fn of(
-        mesh: &TriMesh,
-        lattice: &Lattice,
-        inside: Inside,
-        progress: &Progress,
-    ) -> Result<Self, LevelsError> {
+    pub fn of(mesh: &TriMesh, lattice: &Lattice, inside: Inside, progress: &Progress) -> Result<Self, LevelsError> {
         let counts = counts(lattice);
         let surface = CutSurface::of(mesh, lattice);
         progress.check()?;

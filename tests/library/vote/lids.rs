@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3, IVec3};
 use meshwright::lattice::Lattice;
-use meshwright::ldi::{Expression, Operands};
+use meshwright::ldi::{Expression, Inside, Operands};
 use meshwright::mesh::TriMesh;
 use meshwright::progress::Progress;
 use meshwright::vote::{Lid, Winding};
@@ -49,12 +49,24 @@ fn each_edge(
     expression: &Expression,
     resolution: u32,
     inside: impl Fn(DVec3) -> bool,
+    visit: impl FnMut(DVec3, DVec3, Option<Lid>),
+) {
+    each_edge_by(Inside::Positive, operands, expression, resolution, inside, visit);
+}
+
+/// The same where other winding numbers of an operand are inside.
+fn each_edge_by(
+    rule: Inside,
+    operands: &[TriMesh],
+    expression: &Expression,
+    resolution: u32,
+    inside: impl Fn(DVec3) -> bool,
     mut visit: impl FnMut(DVec3, DVec3, Option<Lid>),
 ) {
     let mut soup = TriMesh::default();
     operands.iter().for_each(|operand| soup.append(operand));
     let lattice = stages::lattice_of(&soup, resolution);
-    let counts = Operands::new(operands.iter().map(|operand| operand.triangles.len()));
+    let counts = Operands::new(operands.iter().map(|operand| operand.triangles.len())).with_inside(rule);
     let winding = Winding::new(&soup, &counts, &lattice, &Progress::none());
     let model = |voxel: IVec3| lattice.to_model(voxel.as_dvec3());
     for voxel in voxels(&lattice) {
@@ -122,13 +134,16 @@ proptest! {
         offset in prop::array::uniform3(-0.6f64..0.6),
         holes in 1u32..4,
         which in 0usize..4,
+        rule in prop::sample::select(vec![Inside::Positive, Inside::Nonzero, Inside::Odd]),
+        inwards in any::<bool>(),
     ) {
         // Bent rims on a torus, and an open box that meets it.
         let torus = without(shapes::torus(24, 12), |t| t % 192 < 40 * holes as usize);
         // No rim shall lie on a lattice edge.
         let torus = turned(torus, DMat3::from_rotation_z(0.1) * DMat3::from_rotation_x(0.2));
         let offset = DVec3::from_array(offset);
-        let open = turned(open_box(offset - 0.7, offset + 0.7, &[1, 4]), turn);
+        let mut open = turned(open_box(offset - 0.7, offset + 0.7, &[1, 4]), turn);
+        open.triangles.iter_mut().filter(|_| inwards).for_each(|t| t.swap(1, 2));
         let [a, b] = [0, 1].map(|n| Box::new(Expression::Operand(n)));
         let expression = [
             Expression::union(2),
@@ -136,21 +151,27 @@ proptest! {
             Expression::Difference(a.clone(), b.clone()),
             Expression::SymmetricDifference(b, a),
         ][which].clone();
-        let compared = compare(&[torus, open], &expression);
+        let compared = compare(&[torus.clone(), open.clone()], &expression, rule);
         // An intersection or a difference may lose all of them.
         prop_assert!(compared > 0 || which == 1 || which == 2, "no lid at all");
+        // Both in one operand: where they overlap its number passes other levels.
+        let mut both = torus;
+        both.append(&open);
+        let nothing = shapes::cuboid(DVec3::splat(5.0), DVec3::splat(5.1));
+        prop_assert!(compare(&[both, nothing], &Expression::Operand(0), rule) > 0, "no lid of the sum");
     }
 }
 
 /// Compares the lids of all lattice edges with the summed winding numbers; returns how many there
 /// were.
-fn compare(operands: &[TriMesh; 2], expression: &Expression) -> usize {
+fn compare(operands: &[TriMesh; 2], expression: &Expression, rule: Inside) -> usize {
     let values = |p: DVec3| [0, 1].map(|n| winding(&operands[n], p));
-    let inside = |p: DVec3| expression.evaluate(&values(p).map(|w| w > 0.5));
+    let inside = |p: DVec3| expression.evaluate(&values(p).map(|w| rule.holds_near(w)));
     let mut compared = 0;
-    each_edge(operands, expression, 16, inside, |from, to, lid| {
+    each_edge_by(rule, operands, expression, 16, inside, |from, to, lid| {
         let around = |t: f64| [t - 1e-9, t + 1e-9].map(|t| values(from.lerp(to, t)));
-        let passing = |sides: [[f64; 2]; 2]| (0..2).find(|&n| (sides[0][n] > 0.5) != (sides[1][n] > 0.5));
+        let passing =
+            |sides: [[f64; 2]; 2]| (0..2).find(|&n| rule.holds_near(sides[0][n]) != rule.holds_near(sides[1][n]));
         let Some(lid) = lid else {
             // Then a triangle makes the change, or several rims that are hard to tell apart.
             let (mut low, mut high) = (0.0, 1.0);
@@ -165,12 +186,13 @@ fn compare(operands: &[TriMesh; 2], expression: &Expression) -> usize {
             return;
         };
         let (p, sides) = (place(from, to, &lid), around(lid.t));
-        let [before, after] = sides.map(|values| expression.evaluate(&values.map(|w| w > 0.5)));
+        let [before, after] = sides.map(|values| expression.evaluate(&values.map(|w| rule.holds_near(w))));
         assert!(before && !after, "{lid:?} between {from} and {to}: {sides:?}");
         let n = passing(sides).expect("an operand that changes");
         let steep = (sides[0][n] - sides[1][n]).abs() * 5e8;
         let w = winding(&operands[n], p);
-        assert!((w - 0.5).abs() < 1e-10 * (1.0 + steep), "{lid:?} at {p}: {w}, {steep}");
+        let off = w - 0.5 - (w - 0.5).round();
+        assert!(off.abs() < 1e-10 * (1.0 + steep), "{lid:?} at {p}: {w}, {steep}");
         let difference = |axis: DVec3| {
             let change = values(p + axis * 1e-7)[n] - values(p - axis * 1e-7)[n];
             change - change.round()
