@@ -51,6 +51,7 @@ pub mod io;
 pub mod ldi;
 pub mod orient;
 pub mod shells;
+pub mod arrange;
 pub mod vote;
 pub mod sdf;
 #[cfg(feature = "gpu")]

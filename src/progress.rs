@@ -30,6 +30,8 @@ pub enum Stage {
     Orient,
     /// Closed surfaces that touch nothing are set apart.
     Shells,
+    /// What crosses is cut, exactly.
+    Arrange,
     /// Rays are cast through the model.
     Ldi,
     /// The rays' pieces inside the solid are found.

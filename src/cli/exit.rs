@@ -133,6 +133,7 @@ impl Failure {
             }
             Trouble::Options => Self::usage(error.to_string()),
             Trouble::Voxel => Self::new(if asked.voxel { Exit::Usage } else { Exit::Input }, error.to_string()),
+            Trouble::NotExact => Self::new(Exit::Limit, error.to_string()),
             Trouble::Input => Self::input(error.to_string()),
             Trouble::NoRoom => Self::new(Exit::Memory, error.to_string()),
             Trouble::Device | Trouble::Call | Trouble::Index => Self::internal(error.to_string()),

@@ -33,6 +33,8 @@ pub enum Trouble<'a> {
     NoRoom,
     /// The graphics processor cannot do it.
     Device,
+    /// An exact result was asked for, and there is none.
+    NotExact,
     /// What was made is not valid.
     NotSolid(&'a NotSolid),
     /// The caller contradicts itself: the expression names what was not given.
@@ -69,6 +71,7 @@ impl Advice for BooleanError {
             Self::Lattice(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
             Self::Nothing(_) => Trouble::Input,
+            Self::NotExact(_) => Trouble::NotExact,
             Self::Device { .. } => Trouble::Device,
             Self::NotSolid(what) => Trouble::NotSolid(what),
         }
@@ -77,6 +80,7 @@ impl Advice for BooleanError {
     fn hint(&self) -> Option<String> {
         match self {
             Self::Device { hint, .. } => Some(hint.clone()),
+            Self::NotExact(_) => Some("--method auto closes what is open, with voxels".into()),
             _ => None,
         }
     }

@@ -97,6 +97,11 @@ impl Apart {
         self.shell_of[operand as usize].get(triangle as usize).copied().flatten()
     }
 
+    /// Whether a triangle of an operand is not decided: its shell does not stand, or it is of none.
+    pub(super) fn is_open(&self, operand: u32, triangle: u32) -> bool {
+        self.shell_of(operand, triangle).is_none_or(|shell| self.fate(shell as usize).is_open())
+    }
+
     /// How many triangles touch others.
     pub(super) fn touching(&self) -> usize {
         self.contacts.touched.iter().filter(|touched| **touched).count()

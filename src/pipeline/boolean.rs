@@ -75,14 +75,17 @@ fn evaluate(
     let standing = apart.surface(&soup, &meshes, (options, &classes), h, progress)?;
     let job = Job { expression, options, classes: &classes, h, progress };
     let draft = match apart.split(soup) {
-        (rest, None) => job.alone(rest, h, &mut stages)?,
-        (rest, Some(whole)) => match job.beside(rest, standing, &mut stages)? {
+        (rest, _) if rest.mesh.triangles.is_empty() => job.nothing_beside(&rest, standing)?,
+        (rest, whole) => match job.exact(&meshes, (&rest, &apart), &standing, &mut stages)? {
             Some(draft) => draft,
-            None => {
-                // What was made runs into what stands: all of it is made together.
-                apart = apart.none_standing();
-                job.alone(whole, h, &mut stages)?
-            }
+            None => match (job.beside(&rest, standing, &mut stages)?, whole) {
+                (Some(draft), _) => draft,
+                (None, whole) => {
+                    // What was made runs into what stands: all of it is made together.
+                    apart = apart.none_standing();
+                    job.alone(whole.unwrap_or(rest), h, &mut stages)?
+                }
+            },
         },
     };
     let mut draft: Draft = account::finished(draft, &apart, stages);

@@ -99,6 +99,9 @@ pub enum BooleanError {
     /// The result encloses nothing.
     #[error(transparent)]
     Nothing(#[from] NothingEnclosed),
+    /// An exact result was asked for, and there is none.
+    #[error("there is no exact result: {0}")]
+    NotExact(crate::arrange::ArrangeError),
     /// The graphics processor was asked for and cannot do it.
     #[error("{reason}")]
     Device {

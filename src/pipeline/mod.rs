@@ -14,6 +14,7 @@ mod colours;
 mod crumbs;
 mod distance;
 mod error;
+mod exact;
 mod field;
 mod frame;
 mod hollow;
@@ -56,7 +57,7 @@ pub use field::{
 pub use hollow::{Drain, HollowError, HollowOptions, hollow, plan_hollow};
 pub use morphology::{MorphologyOptions, morphology, plan_morphology};
 pub use operand::Operand;
-pub use options::{Options, Precision, SurfaceOptions, VoxelSize};
+pub use options::{Method, Options, Precision, SurfaceOptions, VoxelSize};
 pub use outcome::Outcome;
 pub use plan::{Plan, plan};
 pub use report::{

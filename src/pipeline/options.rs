@@ -33,6 +33,8 @@ impl VoxelSize {
 pub struct Options {
     /// Spacing of the lattice.
     pub voxel: VoxelSize,
+    /// Which way the result is made.
+    pub method: Method,
     /// Orientation of the input.
     pub orient: OrientMode,
     /// Which winding numbers of an operand are inside.
@@ -51,6 +53,20 @@ pub struct Options {
     pub backend: Backend,
     /// What numbers the result may have: those of the format that it is for.
     pub precision: Precision,
+}
+
+/// Which way a result is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// Exactly, where the operands are closed once they are cut where they cross; else from voxels.
+    #[default]
+    Auto,
+    /// Exactly, or not at all: an operand with holes is an error.
+    Exact,
+    /// From voxels, apart from shells that are closed and touch nothing.
+    Voxel,
 }
 
 /// How a pipeline that is given a solid makes surface anew.
@@ -94,6 +110,7 @@ impl Options {
         let SurfaceOptions { voxel, collapse, fit, max_memory, precision } = SurfaceOptions::new(voxel);
         Self {
             voxel,
+            method: Method::default(),
             orient: OrientMode::Auto,
             inside: Inside::default(),
             vote: VoteRule::default(),

@@ -36,10 +36,13 @@ impl Job<'_> {
     /// The result made of what stands and of what voxels make of the rest; `None` where the two touch, however small the voxels.
     pub(super) fn beside(
         &self,
-        rest: Soup,
+        rest: &Soup,
         standing: Standing,
         stages: &mut Stages<'_>,
     ) -> Result<Option<Draft>, BooleanError> {
+        if standing.mesh.triangles.is_empty() {
+            return self.alone(rest.clone(), self.h, stages).map(Some);
+        }
         let cells = plan::area(&rest.mesh) / (self.h * self.h);
         let finest = rest.mesh.bounds().map_or(0.0, |bounds| sizing::finest(&bounds));
         for halvings in 0..=MOST_HALVINGS {
@@ -47,7 +50,7 @@ impl Job<'_> {
             if halvings > 0 && (cells * finer * finer > MOST_CELLS || self.h / finer < finest) {
                 break;
             }
-            let made = self.if_any(&rest, self.h / finer, stages)?;
+            let made = self.if_any(rest, self.h / finer, stages)?;
             if made.mesh.triangles.is_empty() && standing.mesh.triangles.is_empty() {
                 return Err(NothingEnclosed::NoCommonPart.into());
             }
@@ -60,17 +63,21 @@ impl Job<'_> {
 
     /// What voxels of size `h` make of a soup, be it nothing.
     fn if_any(&self, rest: &Soup, h: f64, stages: &mut Stages<'_>) -> Result<Draft, BooleanError> {
-        let nothing = |warnings| {
-            let lattice = Lattice { origin: DVec3::ZERO, h, dims: IVec3::ZERO };
-            let report = Report { voxel: h, orient: rest.reports.clone(), warnings, ..Report::default() };
-            Draft { mesh: TriMesh::default(), sources: Vec::new(), lattice, report }
-        };
-        if rest.mesh.triangles.is_empty() {
-            return Ok(nothing(Vec::new()));
-        }
         match self.alone(rest.clone(), h, stages) {
-            Err(BooleanError::Nothing(why)) => Ok(nothing(vec![Warning::NothingMore(why)])),
+            Err(BooleanError::Nothing(why)) => {
+                let mut nothing = nothing(rest, h);
+                nothing.report.warnings.push(Warning::NothingMore(why));
+                Ok(nothing)
+            }
             other => other,
+        }
+    }
+
+    /// What stands, where nothing else is to be done.
+    pub(super) fn nothing_beside(&self, rest: &Soup, standing: Standing) -> Result<Draft, BooleanError> {
+        match standing.mesh.triangles.is_empty() {
+            true => Err(NothingEnclosed::NoCommonPart.into()),
+            false => Ok(joined(standing, nothing(rest, self.h))),
         }
     }
 
@@ -122,6 +129,13 @@ impl Job<'_> {
         let crossings = plan::crossings(&[mesh], lattice);
         CastOptions { orient: self.options.orient, backend: self.options.backend, crossings }
     }
+}
+
+/// An empty draft: nothing of a soup.
+fn nothing(rest: &Soup, h: f64) -> Draft {
+    let lattice = Lattice { origin: DVec3::ZERO, h, dims: IVec3::ZERO };
+    let report = Report { voxel: h, orient: rest.reports.clone(), ..Report::default() };
+    Draft { mesh: TriMesh::default(), sources: Vec::new(), lattice, report }
 }
 
 /// What stands, and after it what was made.

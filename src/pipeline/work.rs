@@ -8,7 +8,7 @@ use crate::progress::Stage;
 
 /// Seconds per triangle of the input. Like all that follows for one core, measured on the Stanford bunny at 256 voxels; a bar that
 /// shows how far a run is needs their ratios only.
-const PER_TRIANGLE: [(Stage, f64); 2] = [(Stage::Orient, 0.4e-6), (Stage::Shells, 0.4e-6)];
+const PER_TRIANGLE: [(Stage, f64); 3] = [(Stage::Orient, 0.4e-6), (Stage::Shells, 0.4e-6), (Stage::Arrange, 0.8e-6)];
 /// Seconds per cell of surface.
 const PER_CELL: [(Stage, f64); 6] = [
     (Stage::Ldi, 0.39e-6),

@@ -16,6 +16,7 @@ pub use warning::Warning;
 
 use serde::Serialize;
 
+use crate::arrange::ArrangeReport;
 use crate::backend::BackendReport;
 use crate::fit::FitReport;
 use crate::ldi::Inside;
@@ -37,6 +38,8 @@ pub struct Report {
     pub lattice: bool,
     /// What stayed as it is, without rays and voxels.
     pub standing: StandingReport,
+    /// What was cut exactly; `None` where nothing was.
+    pub exact: Option<ArrangeReport>,
     /// Bodies, voids and tunnels before and after; `None` where an operation changes them.
     pub topology: Option<TopologyReport>,
     /// Cleaning and orientation of each operand.

@@ -1,0 +1,55 @@
+//! The fine lattice: numbers of 30 bits that everything that crosses is computed in.
+
+use glam::DVec3;
+
+use super::point::BITS;
+
+/// A lattice around the origin of model space.
+///
+/// Its step is a power of two, and no coordinate of the model is more than 2³⁰ steps. An `f32` of at least 2²³ steps is a whole
+/// number of steps, and a whole number of fewer than 2²⁴ steps is an `f32`: so single precision and the lattice go together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Fine {
+    /// Model units.
+    pub(crate) step: f64,
+    /// Whether coordinates are to be `f32` numbers, too.
+    pub(crate) single: bool,
+}
+
+impl Fine {
+    /// The lattice for coordinates of at most this size, model units.
+    pub(crate) fn of(largest: f64, single: bool) -> Self {
+        // Far from the ends of floating point, so that steps and their inverses are normal numbers.
+        let exponent = largest.max(1e-250).log2().floor() as i32 + 1 - BITS as i32;
+        Self { step: 2f64.powi(exponent), single }
+    }
+
+    /// The place nearest to a point.
+    pub(crate) fn place(&self, p: DVec3) -> [i32; 3] {
+        p.to_array().map(|x| (x / self.step).round() as i32)
+    }
+
+    /// The place for a point in steps, one whose coordinates the result may have.
+    pub(crate) fn settled(&self, p: DVec3) -> [i32; 3] {
+        p.to_array().map(|x| match self.single {
+            true => (f64::from(x.round() as f32)) as i32,
+            false => x.round() as i32,
+        })
+    }
+
+    /// The point at a place, model units.
+    pub(crate) fn point(&self, place: [i32; 3]) -> DVec3 {
+        DVec3::from_array(place.map(f64::from)) * self.step
+    }
+
+    /// The distance of the numbers that a coordinate of this size may have, steps.
+    pub(crate) fn step_at(&self, size: f64) -> f64 {
+        let exponent = size.max(1.0).log2().floor() as i32 - 23;
+        if self.single { 2f64.powi(exponent.max(0)) } else { 1.0 }
+    }
+
+    /// The distance of the numbers that a coordinate of the result may have next to the largest one, steps.
+    pub(crate) fn coarsest(&self) -> i32 {
+        if self.single { 1 << (BITS - 24) } else { 1 }
+    }
+}

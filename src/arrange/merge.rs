@@ -1,0 +1,190 @@
+//! What an extracted surface has of each sheet, triangulated with no more points than it needs.
+//!
+//! Much of what was cut borders on nothing any more once the pieces inside of the solid are gone. A point in the middle of a flat region,
+//! or of a straight crease, says nothing; but each such point would be rounded, and with many points close to each other rounding goes wrong.
+
+use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::extract::Face;
+use super::facets::Cover;
+use super::flat::FlatPoints;
+use super::planar::Planar;
+use super::plane::Plane;
+use super::refine::{BEYOND, Refined, sorted_by_place};
+use crate::mesh::edges::Edges;
+use crate::progress::{Progress, Stopped};
+
+/// What makes faces one region: their sheet, the side that the solid lies on, and a number that keeps apart what looks different.
+type Region = (u32, bool, u32);
+
+/// A border of a region from a needed point to the next, with the region on its left as seen from outside.
+type Border = (Region, [u32; 2], Cover);
+
+/// The same surface with no more points than it needs. `class`: triangles of the input with different numbers are not merged.
+pub(crate) fn merge(
+    refined: &Refined,
+    faces: Vec<Face>,
+    class: &(impl Fn(u32) -> u32 + Sync),
+    progress: &Progress,
+) -> Result<Vec<Face>, Stopped> {
+    let corners: Vec<[u32; 3]> = faces.iter().map(|face| face.corners).collect();
+    let region: Vec<Region> = faces.iter().map(|face| (face.facet, face.over, class(face.cover.triangle))).collect();
+    let creases = creases(refined, &corners, &region);
+    let is_whole = |face: &Face| refined.is_whole(face.facet);
+    // The border half-edges of cut sheets, by where they start.
+    let mut next: FxHashMap<(Region, u32), u32> = FxHashMap::default();
+    let mut starts: Vec<(Region, [u32; 2], Cover)> = Vec::new();
+    for (n, face) in faces.iter().enumerate().filter(|(_, face)| !is_whole(face)) {
+        for k in 0..3 {
+            let [u, v] = [face.corners[k], face.corners[(k + 1) % 3]];
+            if !creases.edges.contains(&[u.min(v), u.max(v)]) {
+                continue;
+            }
+            match creases.straight.contains(&u) {
+                true => _ = next.insert((region[n], u), v),
+                false => starts.push((region[n], [u, v], face.cover)),
+            }
+        }
+    }
+    let mut borders: Vec<Border> = starts
+        .into_iter()
+        .map(|(region, [u, mut v], cover)| {
+            while let Some(&on) = next.get(&(region, v)) {
+                v = on;
+            }
+            (region, [u, v], cover)
+        })
+        .collect();
+    borders.par_sort_unstable();
+    let sheets: Vec<&[Border]> = borders.chunk_by(|a, b| a.0.0 == b.0.0).collect();
+    let merged: Vec<Vec<Face>> = sheets
+        .par_iter()
+        .map(|borders| progress.check().map(|()| triangulated(refined, borders)))
+        .collect::<Result<_, _>>()?;
+    // In the order of the facets.
+    let of_sheet: FxHashMap<u32, usize> = sheets.iter().enumerate().map(|(n, borders)| (borders[0].0.0, n)).collect();
+    let mut result = Vec::new();
+    for same in faces.chunk_by(|a, b| a.facet == b.facet) {
+        match of_sheet.get(&same[0].facet) {
+            Some(&n) if !is_whole(&same[0]) => result.extend_from_slice(&merged[n]),
+            _ => result.extend_from_slice(same),
+        }
+    }
+    Ok(result)
+}
+
+/// The edges between regions, and the points in the middle of straight ones.
+struct Creases {
+    edges: FxHashSet<[u32; 2]>,
+    straight: FxHashSet<u32>,
+}
+
+fn creases(refined: &Refined, corners: &[[u32; 3]], region: &[Region]) -> Creases {
+    let edges = Edges::new(corners, refined.points.len());
+    let mut found = Creases { edges: FxHashSet::default(), straight: FxHashSet::default() };
+    // For each point the edges that end at it, with the regions beside them.
+    let mut at: Vec<(u32, u32, u32)> = Vec::new();
+    let mut beside: Vec<Vec<(Region, bool)>> = Vec::new();
+    edges.each(|edge| {
+        let mut sides: Vec<(Region, bool)> =
+            edge.halves().map(|half| (region[half as usize / 3], edges.runs_up(half))).collect();
+        if sides.len() == 2 && sides[0].0 == sides[1].0 {
+            return;
+        }
+        // Uncut facets have no points to spare.
+        if edge.halves().all(|half| refined.is_whole(region[half as usize / 3].0)) {
+            return;
+        }
+        found.edges.insert(edge.ends);
+        sides.sort_unstable();
+        let number = beside.len() as u32;
+        beside.push(sides);
+        at.extend([(edge.ends[0], edge.ends[1], number), (edge.ends[1], edge.ends[0], number)]);
+    });
+    at.par_sort_unstable();
+    for same in at.chunk_by(|a, b| a.0 == b.0) {
+        let &[(p, a, first), (_, b, second)] = same else { continue };
+        // Up along one edge and down along the other, or the other way round: an edge runs up if its other end has the higher number.
+        let turned = (a > p) == (b > p);
+        let (one, two) = (&beside[first as usize], &beside[second as usize]);
+        let alike = one.len() == two.len() && two.iter().all(|&(r, up)| one.contains(&(r, up != turned)));
+        if alike && refined.points.are_in_line(a, p, b) {
+            found.straight.insert(p);
+        }
+    }
+    found
+}
+
+/// The regions of one sheet between their borders.
+fn triangulated(refined: &Refined, borders: &[Border]) -> Vec<Face> {
+    let facet = borders[0].0.0;
+    let plane: Plane = refined.facets.plane(facet);
+    let axis = plane.axis();
+    let mut numbers: Vec<u32> = borders.iter().flat_map(|border| border.1).collect();
+    let single = refined.is_single(facet);
+    let corners = refined.facets.corners[facet as usize];
+    numbers.extend(corners.iter().filter(|_| single));
+    numbers.sort_unstable();
+    numbers.dedup();
+    sorted_by_place(&refined.points, &mut numbers);
+    let local: FxHashMap<u32, u32> = numbers.iter().zip(0..).map(|(&number, n)| (number, n)).collect();
+    let mut flat = FlatPoints::new(&refined.points, &numbers, axis, plane.normal[axis] < 0);
+    let root = match single {
+        true => {
+            let corners = corners.map(|v| local[&v]);
+            let first = (0..3).min_by_key(|&k| corners[k]).unwrap_or(0);
+            [0, 1, 2].map(|n| corners[(first + n) % 3])
+        }
+        false => BEYOND.map(|[x, y]| flat.push(x, y)),
+    };
+    let mut planar = Planar::new(&flat, root);
+    (0..numbers.len() as u32).filter(|p| !root.contains(p)).for_each(|p| planar.insert(p));
+    // What lies left of an edge, as the facet is seen: regions over it run the other way round.
+    let mut left: FxHashMap<[u32; 2], (Region, Cover)> = FxHashMap::default();
+    for &(region, [u, v], cover) in borders {
+        let [u, v] = [local[&u], local[&v]];
+        left.insert(if region.1 { [v, u] } else { [u, v] }, (region, cover));
+    }
+    let mut edges: Vec<[u32; 2]> = left.keys().map(|&[u, v]| [u.min(v), u.max(v)]).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges.iter().zip(0..).for_each(|(&[u, v], n)| planar.fix(u, v, n));
+    planar.relax();
+    let inside = regions(&planar, &left);
+    let face = |(corners, found): (&[u32; 3], &Option<(Region, Cover)>)| {
+        let ((_, over, _), cover) = (*found)?;
+        let [a, b, c] = corners.map(|v| numbers[v as usize]);
+        Some(Face { corners: if over { [a, c, b] } else { [a, b, c] }, facet, over, cover })
+    };
+    planar.triangles.iter().zip(&inside).filter_map(face).collect()
+}
+
+/// The region that each triangle lies in.
+fn regions(planar: &Planar<'_>, left: &FxHashMap<[u32; 2], (Region, Cover)>) -> Vec<Option<(Region, Cover)>> {
+    let mut found: Vec<Option<(Region, Cover)>> = vec![None; planar.triangles.len()];
+    let mut seen = vec![false; planar.triangles.len()];
+    for start in 0..planar.triangles.len() as u32 {
+        if seen[start as usize] {
+            continue;
+        }
+        // All triangles between the same fixed edges.
+        let mut members = vec![start];
+        seen[start as usize] = true;
+        let mut region = None;
+        let mut at = 0;
+        while let Some(&t) = members.get(at) {
+            at += 1;
+            let corners = planar.triangles[t as usize];
+            for k in 0..3 {
+                match (planar.fixed(t, k), planar.across(t, k)) {
+                    (Some(_), _) => region = region.or(left.get(&[corners[k], corners[(k + 1) % 3]]).copied()),
+                    (None, Some(other)) if !std::mem::replace(&mut seen[other as usize], true) => members.push(other),
+                    _ => {}
+                }
+            }
+        }
+        members.iter().for_each(|&t| found[t as usize] = region);
+    }
+    found
+}

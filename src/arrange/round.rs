@@ -1,0 +1,222 @@
+//! From an exact surface to one whose vertices have numbers that a file can hold, and of which no triangle crosses another.
+//!
+//! Rounding makes triangles cross that only came near each other. What crosses is united with itself again: the surface as it is
+//! now, exactly, and rounded again. So that this ends, points that are made near a vertex become that vertex, and what keeps crossing is moved onto a
+//! grid that gets coarser from round to round.
+
+use glam::DVec3;
+
+use super::cells::{Cells, Owner, gaps};
+use super::draft::{Draft, Kind, Rounding};
+use super::extract::{Face, extract};
+use super::facets::Facets;
+use super::fine::Fine;
+use super::merge::merge;
+use super::near::Near;
+use super::refine::{Refined, refine};
+use super::solve;
+use crate::mesh::{TriMesh, flat_triangles, self_intersections};
+use crate::progress::{Progress, Stopped};
+
+/// How often a surface is united with itself before another way is tried.
+const ROUNDS: u32 = 8;
+
+/// A surface that grows by more than this factor does not get better.
+const GROWTH: usize = 2;
+
+/// Neither does one with more than this many times the fewest triangles that crossed before, and some to spare.
+const WORSE: usize = 4;
+
+/// One way of going on where triangles cross once rounded. Lengths are in the coarsest numbers that coordinates may have.
+///
+/// Measured on the closed files of the real data in single and double precision: no way ends well on all of them, and one of the first two ends
+/// well on each. Grids that grow from round to round, and cutting needles instead of collapsing them, end well on half of the hard ones.
+#[derive(Debug, Clone, Copy)]
+struct Way {
+    /// Rounds before anything is moved onto the grid.
+    patience: u32,
+    /// The grid.
+    grid: i32,
+    /// How far away a vertex is found by a point that is made.
+    reach: f64,
+    /// How short an edge is collapsed in the first round; doubled in each further one.
+    needle: f64,
+}
+
+const WAYS: [Way; 5] = [
+    Way { patience: 2, grid: 8, reach: 2.0, needle: 16.0 },
+    Way { patience: 0, grid: 8, reach: 2.0, needle: 16.0 },
+    Way { patience: 1, grid: 32, reach: 8.0, needle: 16.0 },
+    Way { patience: 4, grid: 8, reach: 8.0, needle: 4.0 },
+    Way { patience: 2, grid: 64, reach: 16.0, needle: 64.0 },
+];
+
+/// A surface that is done.
+#[derive(Debug)]
+pub(crate) struct Rounded {
+    pub(crate) mesh: TriMesh,
+    pub(crate) sources: Vec<u32>,
+    /// How often the surface was united with itself.
+    pub(crate) rounds: u32,
+    /// Vertices that were made to move apart what touches.
+    pub(crate) separated: usize,
+    /// By which part the volume has changed.
+    pub(crate) volume_error: f64,
+}
+
+/// All triangles are of one operand, as they are.
+struct One;
+
+impl Owner for One {
+    fn operand(&self, _: u32) -> u32 {
+        0
+    }
+
+    fn is_turned(&self, _: u32) -> bool {
+        false
+    }
+}
+
+/// The surface of a solid to be rounded.
+pub(crate) struct Surface<'a> {
+    pub(crate) refined: &'a Refined,
+    pub(crate) faces: &'a [Face],
+    /// What each vertex of the arrangement is.
+    pub(crate) kinds: &'a [Kind],
+    pub(crate) fine: &'a Fine,
+    /// The positions of the input's vertices as the result may have them, model units.
+    pub(crate) input: &'a [DVec3],
+    /// A number for each triangle of the input: those with different numbers are not merged.
+    pub(crate) classes: &'a [u32],
+}
+
+/// A volume that is off by less than this part is not worth another way.
+const CLOSE: f64 = 1e-6;
+
+/// Rounds a surface; `None` if triangles cross whichever way is gone. Of several ways the one that changes the volume least is taken, once the
+/// first changes it by much.
+pub(crate) fn round(surface: &Surface<'_>, progress: &Progress) -> Result<Option<Rounded>, Stopped> {
+    let volume = surface.volume();
+    let mut best: Option<Rounded> = None;
+    for way in &WAYS {
+        let Some(mut rounded) = way.go(surface, progress)? else { continue };
+        let corners = (0..rounded.mesh.triangles.len()).map(|t| rounded.mesh.corners(t));
+        rounded.volume_error = (solve::volume(corners) / volume - 1.0).abs();
+        // Where nothing crossed, all ways are one.
+        let is_close = rounded.volume_error <= CLOSE || rounded.rounds == 0;
+        if best.as_ref().is_none_or(|best| rounded.volume_error < best.volume_error) {
+            best = Some(rounded);
+        }
+        if is_close {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+impl Way {
+    /// Rounds a surface and unites it with itself until nothing crosses.
+    fn go(&self, surface: &Surface<'_>, progress: &Progress) -> Result<Option<Rounded>, Stopped> {
+        let coarsest = f64::from(surface.fine.coarsest());
+        let rounding = Rounding { fine: surface.fine, kinds: surface.kinds, near: None, exact: true };
+        let mut draft = Draft::new(surface.refined, surface.faces, &rounding, |t| t);
+        let most = GROWTH * draft.triangles.len() + 1000;
+        let mut fewest = usize::MAX;
+        for number in 0..ROUNDS {
+            progress.check()?;
+            let mut mesh = draft.mesh(surface.fine, surface.input);
+            let mut offenders = offenders(&mesh, progress)?;
+            let mut separated = 0;
+            if offenders.is_empty() {
+                separated = draft.separate(surface.fine, f64::from(1 << number));
+                if separated > 0 {
+                    mesh = draft.mesh(surface.fine, surface.input);
+                    offenders = self::offenders(&mesh, progress)?;
+                }
+            }
+            if offenders.is_empty() {
+                let Draft { sources, .. } = draft;
+                return Ok(Some(Rounded { mesh, sources, rounds: number, separated, volume_error: 0.0 }));
+            }
+            fewest = fewest.min(offenders.len());
+            if draft.triangles.len() > most || offenders.len() > WORSE * fewest + 100 {
+                break;
+            }
+            let grid = if number < self.patience { 0 } else { self.grid * surface.fine.coarsest() };
+            draft.move_offenders(&offenders, surface.fine, grid, number);
+            draft.mend_needles(&offenders, self.needle * coarsest * f64::from(1 << number));
+            match united(&draft, self.reach * coarsest, surface, progress)? {
+                Some(next) => draft = next,
+                None => break,
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// The triangles that cross others or have no area, ascending.
+fn offenders(mesh: &TriMesh, progress: &Progress) -> Result<Vec<u32>, Stopped> {
+    let mut found: Vec<u32> = self_intersections(mesh, progress)?.into_iter().flatten().collect();
+    found.extend(flat_triangles(mesh));
+    found.sort_unstable();
+    found.dedup();
+    Ok(found)
+}
+
+/// From this round on vertices of the input are moved onto the grid like others.
+const LAST_RESORT: u32 = 6;
+
+impl Draft {
+    /// Puts the corners of triangles that cross on the lattice, and on a grid, if that is not zero; corners of the input only in the last
+    /// rounds.
+    fn move_offenders(&mut self, offenders: &[u32], fine: &Fine, grid: i32, number: u32) {
+        let mut corners: Vec<u32> = offenders.iter().flat_map(|&t| self.triangles[t as usize]).collect();
+        corners.sort_unstable();
+        corners.dedup();
+        for v in corners.into_iter().map(|v| v as usize) {
+            let spared = matches!(self.kinds[v], Kind::Own(_)) || self.kinds[v] == Kind::Placed;
+            if spared && number < LAST_RESORT {
+                self.kinds[v] = Kind::Placed;
+                continue;
+            }
+            self.kinds[v] = Kind::Moved;
+            if grid > 0 {
+                let nearest = |x: i32| f64::from((x + grid / 2).div_euclid(grid)) * f64::from(grid);
+                self.places[v] = fine.settled(DVec3::from_array(self.places[v].map(nearest)));
+            }
+        }
+    }
+}
+
+/// The union of a draft with itself.
+fn united(draft: &Draft, reach: f64, surface: &Surface<'_>, progress: &Progress) -> Result<Option<Draft>, Stopped> {
+    let (facets, numbers) = Facets::new(&draft.places, &draft.triangles);
+    let mut kinds = vec![Kind::Moved; facets.vertices.len()];
+    for (&n, &kind) in numbers.iter().zip(&draft.kinds) {
+        if kind != Kind::Moved && !matches!(kinds[n as usize], Kind::Own(_)) {
+            kinds[n as usize] = kind;
+        }
+    }
+    let pairs = touching(&facets, progress)?;
+    let mut touched: Vec<u32> = pairs.iter().flatten().copied().collect();
+    touched.sort_unstable();
+    touched.dedup();
+    let near = Near::new(&facets, &touched, reach);
+    let refined = refine(facets, &pairs, progress)?;
+    if !gaps(&refined, &One).is_empty() {
+        return Ok(None);
+    }
+    let cells = Cells::of(&refined, progress)?;
+    let Some(winding) = cells.winding(&refined, 1, &One) else { return Ok(None) };
+    let inside: Vec<bool> = winding.iter().map(|&winding| winding >= 1).collect();
+    let class = |t: u32| surface.classes.get(draft.sources[t as usize] as usize).copied().unwrap_or(0);
+    let faces = merge(&refined, extract(&refined, &cells, &inside), &class, progress)?;
+    let rounding = Rounding { fine: surface.fine, kinds: &kinds, near: Some(&near), exact: false };
+    Ok(Some(Draft::new(&refined, &faces, &rounding, |t| draft.sources[t as usize])))
+}
+
+/// The pairs of facets that touch elsewhere than at what they share.
+pub(crate) fn touching(facets: &Facets, progress: &Progress) -> Result<Vec<[u32; 2]>, Stopped> {
+    let positions = facets.vertices.iter().map(|v| DVec3::from_array(v.map(f64::from))).collect();
+    self_intersections(&TriMesh { positions, triangles: facets.corners.clone() }, progress)
+}

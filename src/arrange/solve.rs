@@ -1,0 +1,176 @@
+//! The whole way from operands to a result.
+
+use glam::DVec3;
+
+use super::cells::{Cells, Gap, gaps};
+use super::draft::Kind;
+use super::extract::{Face, extract};
+use super::facets::Facets;
+use super::fine::Fine;
+use super::merge::merge;
+use super::refine::{Refined, refine};
+use super::round::{Rounded, Surface, round, touching};
+use super::turn::Turned;
+use super::{ArrangeError, ArrangeReport, Opening};
+use crate::ldi::{Expression, Inside, Operands};
+use crate::mesh::TriMesh;
+use crate::orient::OrientMode;
+use crate::progress::Progress;
+
+/// Options of [`arrange`].
+#[derive(Debug, Clone, Copy)]
+pub struct ArrangeOptions<'a> {
+    /// The result in terms of the operands.
+    pub expression: &'a Expression,
+    /// Which winding numbers of an operand are inside.
+    pub inside: Inside,
+    /// Whether shells that face the wrong way are turned over.
+    pub orient: OrientMode,
+    /// Whether all coordinates of the result are to be `f32` numbers.
+    pub single: bool,
+    /// A number for each triangle, or none at all: triangles with different numbers are not merged where they lie in one plane.
+    pub classes: &'a [u32],
+}
+
+/// An exact result, with rounded vertices.
+#[derive(Debug, Clone, Default)]
+pub struct Arranged {
+    /// The surface; nothing if nothing is inside.
+    pub mesh: TriMesh,
+    /// For each triangle the number of one of the input that it lies on.
+    pub sources: Vec<u32>,
+    /// What was found and done.
+    pub report: ArrangeReport,
+}
+
+/// At most so many pairs of triangles that touch are cut: some gigabytes.
+const MOST_PAIRS: usize = 4_000_000;
+
+/// Evaluates a boolean expression over operands that lie one after another in `mesh`, exactly: each has to be closed once everything is cut where
+/// it crosses.
+///
+/// Vertices of the input keep their coordinates in the result, made single precision if that is asked for.
+///
+/// # Errors
+/// [`ArrangeError::Open`] where an operand has holes; see there for others.
+pub fn arrange(
+    mesh: &TriMesh,
+    operands: &Operands,
+    options: &ArrangeOptions<'_>,
+    progress: &Progress,
+) -> Result<Arranged, ArrangeError> {
+    let input: Vec<DVec3> = match options.single {
+        true => mesh.positions.iter().map(|p| p.as_vec3().as_dvec3()).collect(),
+        false => mesh.positions.clone(),
+    };
+    let fine = Fine::of(mesh.positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max), options.single);
+    let (refined, kinds, pairs) = refined(mesh, &fine, progress)?;
+    let owner = Turned::none(operands, mesh.triangles.len());
+    let open = gaps(&refined, &owner);
+    if !open.is_empty() {
+        return Err(opened(&refined, &open, &fine, operands.count()));
+    }
+    let cells = Cells::of(&refined, progress)?;
+    let Some(winding) = cells.winding(&refined, operands.count(), &owner) else {
+        return Err(opened(&refined, &[], &fine, operands.count()));
+    };
+    let (owner, winding) = match options.orient == OrientMode::Auto && options.inside.needs_outward() {
+        true => Turned::outward(mesh, operands, (&refined, &cells), winding),
+        false => (owner, winding),
+    };
+    let inside = inside(&winding, operands.count(), options);
+    let class = |t: u32| options.classes.get(t as usize).copied().unwrap_or(0);
+    let found = extract(&refined, &cells, &inside);
+    let faces = merge(&refined, found, &class, progress)?;
+    let mut report = ArrangeReport {
+        triangles: mesh.triangles.len(),
+        pairs,
+        cut: refined.cut(),
+        points: refined.points.len() - refined.facets.vertices.len(),
+        curves: refined.curves.len(),
+        cells: cells.count,
+        turned: owner.count(),
+        ..ArrangeReport::default()
+    };
+    if faces.is_empty() {
+        return Ok(Arranged { report, ..Arranged::default() });
+    }
+    let surface = Surface {
+        refined: &refined,
+        faces: &faces,
+        kinds: &kinds,
+        fine: &fine,
+        input: &input,
+        classes: options.classes,
+    };
+    let Rounded { mesh, sources, rounds, separated, volume_error } =
+        round(&surface, progress)?.ok_or(ArrangeError::Rounding)?;
+    (report.rounds, report.separated, report.volume_error) = (rounds as usize, separated, volume_error);
+    Ok(Arranged { mesh, sources, report })
+}
+
+/// The triangles on the lattice, cut where they touch; what each vertex is; and how many pairs touch.
+fn refined(mesh: &TriMesh, fine: &Fine, progress: &Progress) -> Result<(Refined, Vec<Kind>, usize), ArrangeError> {
+    let places: Vec<[i32; 3]> = mesh.positions.iter().map(|&p| fine.place(p)).collect();
+    let (facets, numbers) = Facets::new(&places, &mesh.triangles);
+    let mut kinds = vec![Kind::Moved; facets.vertices.len()];
+    for (v, &n) in numbers.iter().enumerate().rev() {
+        kinds[n as usize] = Kind::Own(v as u32);
+    }
+    let pairs = touching(&facets, progress)?;
+    if pairs.len() > MOST_PAIRS {
+        return Err(ArrangeError::Crowded { pairs: pairs.len(), most: MOST_PAIRS });
+    }
+    Ok((refine(facets, &pairs, progress)?, kinds, pairs.len()))
+}
+
+/// Why there is no exact result: what is open.
+fn opened(refined: &Refined, open: &[Gap], fine: &Fine, operands: usize) -> ArrangeError {
+    let mut closed = vec![true; operands];
+    open.iter().for_each(|gap| closed[gap.operand as usize] = false);
+    let ends = |gap: &Gap| gap.ends.map(|p| (refined.points.approximate(p) * fine.step).to_array());
+    let first = open.first().map(|gap| Opening { operand: gap.operand as usize, ends: ends(gap) });
+    let first = first.unwrap_or(Opening { operand: 0, ends: [[0.0; 3]; 2] });
+    ArrangeError::Open { edges: open.len(), first, closed }
+}
+
+/// For each cell whether it is inside of the result.
+fn inside(winding: &[i32], operands: usize, options: &ArrangeOptions<'_>) -> Vec<bool> {
+    let mut of_operands = vec![false; operands];
+    let cell = |winding: &[i32]| {
+        of_operands.iter_mut().zip(winding).for_each(|(inside, &w)| *inside = options.inside.holds(w));
+        options.expression.evaluate(&of_operands)
+    };
+    winding.chunks(operands).map(cell).collect()
+}
+
+/// The segments along which triangles of a mesh cross each other, model units: where a boolean would cut.
+///
+/// # Errors
+/// [`ArrangeError::Crowded`] where there are too many, and a stop.
+pub fn crossing_curves(mesh: &TriMesh, progress: &Progress) -> Result<Vec<[DVec3; 2]>, ArrangeError> {
+    let fine = Fine::of(mesh.positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max), false);
+    let (refined, _, _) = refined(mesh, &fine, progress)?;
+    let point = |p: u32| refined.points.approximate(p) * fine.step;
+    Ok(refined.curves.iter().map(|curve| curve.map(point)).collect())
+}
+
+impl Surface<'_> {
+    /// The volume before rounding, cubic model units, to about 1e-12 of it.
+    pub(super) fn volume(&self) -> f64 {
+        let corner = |p: u32| match self.refined.points.vertex(p) {
+            Some(_) => match self.kinds[p as usize] {
+                Kind::Own(v) => self.input[v as usize],
+                _ => self.refined.points.approximate(p) * self.fine.step,
+            },
+            None => self.refined.points.approximate(p) * self.fine.step,
+        };
+        volume(self.faces.iter().map(|face: &Face| face.corners.map(corner)))
+    }
+}
+
+/// The signed volume that triangles enclose.
+pub(super) fn volume(triangles: impl Iterator<Item = [DVec3; 3]> + Clone) -> f64 {
+    let Some([origin, ..]) = triangles.clone().next() else { return 0.0 };
+    triangles.map(|corners| corners.map(|p| p - origin)).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
+}

@@ -1,0 +1,135 @@
+//! The exact way: shells that touch, cut where they cross and decided by winding numbers, without rays and voxels.
+
+use glam::{DVec3, IVec3};
+
+use super::apart::{Apart, Standing, touch};
+use super::rebuild::Job;
+use super::stages::Stages;
+use super::{BooleanError, Draft, Method, NothingEnclosed, Report, TriangleSource};
+use crate::arrange::{ArrangeError, ArrangeOptions, Arranged, arrange};
+use crate::lattice::Lattice;
+use crate::ldi::Operands;
+use crate::mesh::TriMesh;
+use crate::pipeline::Precision;
+use crate::progress::Stage;
+use crate::survey::Soup;
+
+/// Triangles of several operands, one operand after another, with where they come from.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Pile {
+    pub mesh: TriMesh,
+    pub counts: Vec<usize>,
+    pub sources: Vec<TriangleSource>,
+}
+
+impl Pile {
+    /// Adds triangles of a mesh as the next operand, each with where it comes from.
+    pub(super) fn add(&mut self, mesh: &TriMesh, of: impl Iterator<Item = (u32, TriangleSource)>) {
+        let first = self.mesh.positions.len() as u32;
+        self.mesh.positions.extend_from_slice(&mesh.positions);
+        let before = self.mesh.triangles.len();
+        for (t, source) in of {
+            self.mesh.triangles.push(mesh.triangles[t as usize].map(|v| v + first));
+            self.sources.push(source);
+        }
+        self.counts.push(self.mesh.triangles.len() - before);
+    }
+
+    /// The triangles of operands as they were given, without those of shells that are decided already.
+    fn given(operands: &[&TriMesh], apart: &Apart) -> Self {
+        let mut pile = Self::default();
+        for (operand, mesh) in (0u32..).zip(operands) {
+            let open = (0..mesh.triangles.len() as u32).filter(|&t| apart.is_open(operand, t));
+            pile.add(mesh, open.map(|triangle| (triangle, TriangleSource::Operand { operand, triangle })));
+        }
+        pile
+    }
+
+    /// The triangles of a soup: cleaned, and turned so that neighbours agree.
+    fn oriented(soup: &Soup) -> Self {
+        let mut pile = Self::default();
+        for n in 0..soup.operands.count() {
+            let source = |t: usize| TriangleSource::Operand { operand: n as u32, triangle: soup.source[t] };
+            pile.add(&soup.mesh, soup.operands.range(n).map(|t| (t as u32, source(t))));
+        }
+        pile
+    }
+}
+
+impl Job<'_> {
+    /// The exact result made of what stands and of the shells that touch; `None` where the exact way cannot be gone and need not.
+    pub(super) fn exact(
+        &self,
+        operands: &[&TriMesh],
+        (rest, apart): (&Soup, &Apart),
+        standing: &Standing,
+        stages: &mut Stages<'_>,
+    ) -> Result<Option<Draft>, BooleanError> {
+        let method = self.options.method;
+        let keeps = self.options.fit.is_some_and(|fit| !fit.rebuild);
+        if method == Method::Voxel || !keeps {
+            return Ok(None);
+        }
+        stages.begin(Stage::Arrange)?;
+        let mut refused = match self.arranged(&Pile::given(operands, apart)) {
+            Ok(draft) => return self.joined(draft, standing),
+            Err(ArrangeError::Stopped(stopped)) => return Err(stopped.into()),
+            Err(error) => error,
+        };
+        // Neighbours that face opposite ways, or copies, may be all that is wrong.
+        let changed = rest.reports.iter().any(|r| r.flipped_in_patches + r.duplicates_dropped + r.both_sided > 0);
+        if changed && matches!(refused, ArrangeError::Open { .. }) {
+            refused = match self.arranged(&Pile::oriented(rest)) {
+                Ok(draft) => return self.joined(draft, standing),
+                Err(ArrangeError::Stopped(stopped)) => return Err(stopped.into()),
+                Err(_) => refused,
+            };
+        }
+        if method == Method::Exact {
+            return Err(BooleanError::NotExact(refused));
+        }
+        Ok(None)
+    }
+
+    /// The exact result of closed operands.
+    pub(super) fn arranged(&self, pile: &Pile) -> Result<Draft, ArrangeError> {
+        let Self { expression, options, progress, .. } = *self;
+        let class = |source: &TriangleSource| match *source {
+            TriangleSource::Operand { operand, triangle } => {
+                self.classes.get(operand as usize).and_then(|list| list.get(triangle as usize)).copied().unwrap_or(0)
+            }
+            TriangleSource::Closed => 0,
+        };
+        let any = self.classes.iter().any(|list| !list.is_empty());
+        let classes: Vec<u32> = if any { pile.sources.iter().map(class).collect() } else { Vec::new() };
+        let asked = ArrangeOptions {
+            expression,
+            inside: options.inside,
+            orient: options.orient,
+            single: options.precision == Precision::Single,
+            classes: &classes,
+        };
+        let operands = Operands::new(pile.counts.iter().copied());
+        let Arranged { mesh, sources, report } = arrange(&pile.mesh, &operands, &asked, progress)?;
+        let lattice = Lattice { origin: DVec3::ZERO, h: self.h, dims: IVec3::ZERO };
+        let report = Report { voxel: self.h, exact: Some(report), ..Report::default() };
+        let sources = sources.into_iter().map(|t| pile.sources[t as usize]).collect();
+        Ok(Draft { mesh, sources, lattice, report })
+    }
+
+    /// What stands with what was cut beside it; `None` if rounding made the two touch.
+    fn joined(&self, draft: Draft, standing: &Standing) -> Result<Option<Draft>, BooleanError> {
+        if draft.mesh.triangles.is_empty() && standing.mesh.triangles.is_empty() {
+            let alone = self.expression.operand_count() == 1;
+            let why = if alone { NothingEnclosed::Nothing } else { NothingEnclosed::NoCommonPart };
+            return Err(why.into());
+        }
+        if touch(&draft.mesh, &standing.mesh, self.progress)? {
+            return Ok(None);
+        }
+        let Standing { mut mesh, mut sources } = standing.clone();
+        mesh.append(&draft.mesh);
+        sources.extend(draft.sources);
+        Ok(Some(Draft { mesh, sources, ..draft }))
+    }
+}
