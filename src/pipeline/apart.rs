@@ -11,7 +11,7 @@ use crate::ldi::{Expression, Operands};
 use crate::mesh::TriMesh;
 use crate::mesh::edges::Union;
 use crate::progress::{Progress, Stopped};
-use crate::shells::{Contacts, Fate, Shell, Shells, StandingOptions, contacts, shells, standing};
+use crate::shells::{Contacts, Fate, Shell, Shells, StandingOptions, buried, contacts, shells, standing};
 use crate::survey::Soup;
 
 /// The shells of a soup, and what becomes of them.
@@ -20,6 +20,8 @@ pub(super) struct Apart {
     pub contacts: Contacts,
     /// What exact arithmetic says of each shell.
     pub truth: Vec<Fate>,
+    /// Whether a shell of which it says nothing lies inside of the result, or outside, all the same.
+    pub buried: Vec<bool>,
     /// Whether shells of which it says anything stand in this run; else all go through voxels.
     stand: bool,
     /// For each operand and each of its triangles the shell; nothing for triangles that were dropped.
@@ -72,9 +74,13 @@ impl Apart {
             true => standing(&mesh, &shells, &contacts, &asked, progress)?,
             false => vec![Fate::Open; shells.list.len()],
         };
+        let buried = match worth_looking {
+            true => buried(&mesh, &shells, &contacts, &asked, progress)?,
+            false => vec![false; shells.list.len()],
+        };
         let shell_of = shell_of(soup, &shells);
         let crossings = places(&soup.mesh, &contacts.touched);
-        Ok(Self { shells, contacts, truth, stand: keeps, shell_of, crossings })
+        Ok(Self { shells, contacts, truth, buried, stand: keeps, shell_of, crossings })
     }
 
     /// What becomes of a shell in this run.

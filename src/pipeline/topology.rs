@@ -129,6 +129,10 @@ fn lost_and_parted(
     let (mut volume, mut lost_volume) = (0.0, 0.0);
     for (n, shell) in apart.shells.list.iter().enumerate() {
         let group = groups.of[n] as usize;
+        if apart.truth[n].is_open() && apart.buried[n] {
+            report.buried += usize::from(surfaces[group].is_empty());
+            continue;
+        }
         if !groups.single[group] {
             // Whatever touches is one body or more, counted by its first shell.
             all_known &= !(groups.torn[group] || groups.mixed[group] || apart.operands() > 1);
