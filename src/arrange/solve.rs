@@ -12,7 +12,7 @@ use super::refine::{Refined, refine};
 use super::round::{Rounded, Surface, round, touching};
 use super::turn::Turned;
 use super::{ArrangeError, ArrangeReport, Opening};
-use crate::ldi::{Expression, Inside, Operands};
+use crate::ldi::{Expression, Operands};
 use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
 use crate::progress::Progress;
@@ -22,8 +22,6 @@ use crate::progress::Progress;
 pub struct ArrangeOptions<'a> {
     /// The result in terms of the operands.
     pub expression: &'a Expression,
-    /// Which winding numbers of an operand are inside.
-    pub inside: Inside,
     /// Whether shells that face the wrong way are turned over.
     pub orient: OrientMode,
     /// Whether all coordinates of the result are to be `f32` numbers.
@@ -74,11 +72,11 @@ pub fn arrange(
     let Some(winding) = cells.winding(&refined, operands.count(), &owner) else {
         return Err(opened(&refined, &[], &fine, operands.count()));
     };
-    let (owner, winding) = match options.orient == OrientMode::Auto && options.inside.needs_outward() {
+    let (owner, winding) = match options.orient == OrientMode::Auto && operands.inside.needs_outward() {
         true => Turned::outward(mesh, operands, (&refined, &cells), winding),
         false => (owner, winding),
     };
-    let inside = inside(&winding, operands.count(), options);
+    let inside = inside(&winding, operands, options.expression);
     let class = |t: u32| options.classes.get(t as usize).copied().unwrap_or(0);
     let found = extract(&refined, &cells, &inside);
     let faces = merge(&refined, found, &class, progress)?;
@@ -135,13 +133,13 @@ fn opened(refined: &Refined, open: &[Gap], fine: &Fine, operands: usize) -> Arra
 }
 
 /// For each cell whether it is inside of the result.
-fn inside(winding: &[i32], operands: usize, options: &ArrangeOptions<'_>) -> Vec<bool> {
-    let mut of_operands = vec![false; operands];
+fn inside(winding: &[i32], operands: &Operands, expression: &Expression) -> Vec<bool> {
+    let mut of_operands = vec![false; operands.count()];
     let cell = |winding: &[i32]| {
-        of_operands.iter_mut().zip(winding).for_each(|(inside, &w)| *inside = options.inside.holds(w));
-        options.expression.evaluate(&of_operands)
+        of_operands.iter_mut().zip(winding).for_each(|(inside, &w)| *inside = operands.inside.holds(w));
+        expression.evaluate(&of_operands)
     };
-    winding.chunks(operands).map(cell).collect()
+    winding.chunks(operands.count()).map(cell).collect()
 }
 
 /// The segments along which triangles of a mesh cross each other, model units: where a boolean would cut.
