@@ -30,6 +30,8 @@ pub(super) struct Pile {
     pub mesh: TriMesh,
     pub counts: Vec<usize>,
     pub sources: Vec<TriangleSource>,
+    /// For each triangle whether it may touch another one; empty where that is not known.
+    pub suspects: Vec<bool>,
 }
 
 impl Pile {
@@ -50,7 +52,8 @@ impl Pile {
         let mut pile = Self::default();
         for (operand, mesh) in (0u32..).zip(operands) {
             let open = (0..mesh.triangles.len() as u32).filter(|&t| apart.is_open(operand, t));
-            pile.add(mesh, open.map(|triangle| (triangle, TriangleSource::Operand { operand, triangle })));
+            pile.add(mesh, open.clone().map(|triangle| (triangle, TriangleSource::Operand { operand, triangle })));
+            pile.suspects.extend(open.map(|t| apart.may_touch(operand, t)));
         }
         pile
     }
@@ -117,6 +120,7 @@ impl Job<'_> {
             expression,
             orient: options.orient,
             single: options.precision == Precision::Single,
+            suspects: &pile.suspects,
             classes: &classes,
         };
         let operands = Operands::new(pile.counts.iter().copied()).with_inside(options.inside);
