@@ -57,9 +57,10 @@ pub fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
 fn kept(pipeline: &Report) -> Vec<String> {
     let standing = &pipeline.standing;
     let mut parts = Vec::new();
-    if standing.left_out > 0 {
-        let shells = words::plural(standing.left_out, "closed surface");
-        parts.push(format!("{shells} left out, inside of others or outside of the result"));
+    let left_out = standing.left_out + pipeline.topology.as_ref().map_or(0, |topology| topology.buried);
+    if left_out > 0 {
+        let shells = words::plural(left_out, "surface");
+        parts.push(format!("{shells} left out: inside of others, or outside of the result"));
     }
     let counts = &pipeline.triangles;
     parts.push(match (counts.rebuilt, counts.made_up) {

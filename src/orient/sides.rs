@@ -10,8 +10,8 @@ use crate::progress::{Progress, Stopped};
 /// and the next sees the effect. Two settle every file tried.
 const ROUNDS: usize = 4;
 
-/// What a crossing's vote counts. Those that say less count 1: a cube of which one of six sides is half open has a sixth of its rays through the hole,
-/// and half a cube shares half of its rays with the other half.
+/// What a crossing's vote counts; one that says less counts 1. Through the holes of an open body pass few of its rays, but many of those that meet
+/// a piece of a cracked body meet another piece, too.
 const VOICE: u64 = 4;
 
 /// Votes of the rays on one patch.

@@ -3,7 +3,10 @@
 use super::apart::Apart;
 use super::sizing::TYPED;
 use super::stages::Stages;
-use super::{Draft, LdiReport, NothingEnclosed, Report, ThinRegion, ThinReport, TriangleSource, Warning, topology};
+use super::{
+    Draft, LdiReport, NothingEnclosed, Report, ThinRegion, ThinReport, TopologyReport, TriangleSource, Warning,
+    topology,
+};
 use crate::backend::BackendReport;
 use crate::fit::Surface;
 use crate::lattice::{Grid, Lattice};
@@ -139,9 +142,17 @@ pub(super) fn why_nothing(survey: &Survey, finest: f64) -> NothingEnclosed {
 pub(super) fn finished(mut outcome: Draft, apart: &Apart, stages: Stages<'_>) -> Draft {
     let report = &mut outcome.report;
     report.standing = apart.report();
-    report.topology = Some(topology::compared(&outcome.mesh, &outcome.sources, apart));
-    let words = warnings(report);
-    report.warnings.extend(words);
+    if report.exact.is_some() {
+        // What was made whole first has been judged already.
+        let found = topology::of_exact(&outcome.mesh, &outcome.sources, apart);
+        let topology::Found { after, buried } = found;
+        let before = report.topology.take().unwrap_or_default();
+        report.topology = Some(TopologyReport { after, buried, before: None, new_tunnels: None, ..before });
+    } else {
+        report.topology = Some(topology::compared(&outcome.mesh, &outcome.sources, apart));
+        let words = warnings(report);
+        report.warnings.extend(words);
+    }
     report.stages = stages.finish();
     outcome
 }

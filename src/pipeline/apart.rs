@@ -11,7 +11,7 @@ use crate::ldi::{Expression, Operands};
 use crate::mesh::TriMesh;
 use crate::mesh::edges::Union;
 use crate::progress::{Progress, Stopped};
-use crate::shells::{Contacts, Fate, Shell, Shells, StandingOptions, contacts, shells, standing};
+use crate::shells::{Contacts, Fate, Shell, Shells, StandingOptions, buried, contacts, shells, standing};
 use crate::survey::Soup;
 
 /// The shells of a soup, and what becomes of them.
@@ -20,10 +20,14 @@ pub(super) struct Apart {
     pub contacts: Contacts,
     /// What exact arithmetic says of each shell.
     pub truth: Vec<Fate>,
+    /// Whether a shell of which it says nothing lies inside of the result, or outside, all the same.
+    pub buried: Vec<bool>,
     /// Whether shells of which it says anything stand in this run; else all go through voxels.
     stand: bool,
-    /// For each operand and each of its triangles the shell; nothing for triangles that were dropped.
-    shell_of: Vec<Vec<Option<u32>>>,
+    /// For each operand and each of its triangles its number in the soup; nothing for triangles that were dropped.
+    in_soup: Vec<Vec<Option<u32>>>,
+    /// Whether contacts have been looked for.
+    looked: bool,
     /// Places, connected through vertices, where triangles touch others.
     crossings: usize,
 }
@@ -72,9 +76,13 @@ impl Apart {
             true => standing(&mesh, &shells, &contacts, &asked, progress)?,
             false => vec![Fate::Open; shells.list.len()],
         };
-        let shell_of = shell_of(soup, &shells);
+        let buried = match worth_looking {
+            true => buried(&mesh, &shells, &contacts, &asked, progress)?,
+            false => vec![false; shells.list.len()],
+        };
+        let in_soup = in_soup(soup);
         let crossings = places(&soup.mesh, &contacts.touched);
-        Ok(Self { shells, contacts, truth, stand: keeps, shell_of, crossings })
+        Ok(Self { shells, contacts, truth, buried, stand: keeps, in_soup, looked: worth_looking, crossings })
     }
 
     /// What becomes of a shell in this run.
@@ -89,12 +97,22 @@ impl Apart {
 
     /// The number of operands.
     pub(super) fn operands(&self) -> usize {
-        self.shell_of.len()
+        self.in_soup.len()
     }
 
     /// The shell of a triangle of an operand.
     pub(super) fn shell_of(&self, operand: u32, triangle: u32) -> Option<u32> {
-        self.shell_of[operand as usize].get(triangle as usize).copied().flatten()
+        self.in_soup(operand, triangle).map(|t| self.shells.of[t as usize])
+    }
+
+    fn in_soup(&self, operand: u32, triangle: u32) -> Option<u32> {
+        self.in_soup[operand as usize].get(triangle as usize).copied().flatten()
+    }
+
+    /// Whether a triangle of an operand touches another one, as far as that is known.
+    pub(super) fn may_touch(&self, operand: u32, triangle: u32) -> bool {
+        let is_touched = |t: u32| self.contacts.touched[t as usize];
+        !self.looked || self.in_soup(operand, triangle).is_none_or(is_touched)
     }
 
     /// Whether a triangle of an operand is not decided: its shell does not stand, or it is of none.
@@ -195,12 +213,12 @@ impl Apart {
     }
 }
 
-fn shell_of(soup: &Soup, shells: &Shells) -> Vec<Vec<Option<u32>>> {
+fn in_soup(soup: &Soup) -> Vec<Vec<Option<u32>>> {
     let mut of: Vec<Vec<Option<u32>>> = vec![Vec::new(); soup.operands.count()];
-    for (t, (&source, &shell)) in soup.source.iter().zip(&shells.of).enumerate() {
-        let list = &mut of[soup.operands.of(t as u32)];
+    for (t, &source) in (0u32..).zip(&soup.source) {
+        let list = &mut of[soup.operands.of(t)];
         list.resize(list.len().max(source as usize + 1), None);
-        list[source as usize] = Some(shell);
+        list[source as usize] = Some(t);
     }
     of
 }

@@ -30,6 +30,7 @@ mod plan;
 mod rebuild;
 mod refine;
 mod report;
+mod seal;
 mod sizing;
 mod source;
 mod stages;

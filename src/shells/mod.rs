@@ -7,11 +7,13 @@
 
 mod bodies;
 mod boxes;
+mod buried;
 mod contacts;
 mod standing;
 mod winding;
 
 pub use bodies::bodies;
+pub use buried::buried;
 pub use contacts::{Contacts, contacts};
 pub use standing::{Fate, StandingOptions, standing};
 

@@ -53,7 +53,7 @@ impl Fate {
 }
 
 /// A winding number of open shells counts as whole when it is within this of one.
-const WHOLE: f64 = 0.2;
+pub(super) const WHOLE: f64 = 0.2;
 
 /// The fate of each shell. A shell stays as it is when it is closed and touches nothing, when nothing that is open lies inside of it, and
 /// when the winding numbers around it are whole and, by operand, never negative; where they are negative, and nothing open lies

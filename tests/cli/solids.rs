@@ -1,8 +1,10 @@
 //! `repair`, the booleans and `csg`, from file to file.
 
+use glam::DVec3;
 use serde_json::Value;
 use tempfile::TempDir;
 
+use super::common::shapes::cuboid;
 use super::{assert_empty, folder, names_in, run_in};
 
 /// The validity of a written file, as `inspect` sees it; it must have no defect at all.
@@ -287,4 +289,65 @@ fn the_map_shows_what_closes_holes_and_the_fit_has_switches() {
     run_in(&folder, "repair testdata/open_cube.off -o OUT/out.off --no-fit --rebuild").exits(2);
     run_in(&folder, "repair testdata/open_cube.off -o OUT/out.ply --map OUT/out.ply").exits(2);
     run_in(&folder, "repair testdata/open_cube.off -o OUT/out.ply --map testdata/open_cube.off").exits(2);
+}
+
+#[test]
+fn what_counts_as_inside_is_a_flag_of_every_verb_that_reads_a_soup() {
+    let folder = folder();
+    // Three boxes of 960, 360 and 256; the first overlaps the others by 120 and 128.
+    let boxes = "testdata/overlapping_boxes.obj";
+    for (line, rule, volume) in [
+        (format!("repair {boxes}"), "positive", 1328.0),
+        (format!("repair {boxes}"), "nonzero", 1328.0),
+        (format!("repair {boxes}"), "odd", 1080.0),
+        (format!("csg a|b a={boxes} b={boxes}"), "odd", 1080.0),
+        (format!("union {boxes} {boxes}"), "odd", 1080.0),
+    ] {
+        let flags = format!("-o OUT/a.ply --force --resolution 64 --json --inside {rule}");
+        let said = run_in(&folder, &format!("{line} {flags}")).exits(0).json();
+        let both = (&said["options"]["inside"], &said["result"]["pipeline"]["inside"]);
+        assert_eq!(both, (&rule.into(), &rule.into()), "{line}");
+        assert_volume(&solid(&folder, "a.ply"), volume, 0.005);
+    }
+    assert_eq!(
+        run_in(&folder, &format!("repair {boxes} -o OUT/b.ply --resolution 32 --json")).json()["options"]["inside"],
+        "positive"
+    );
+    // Verbs that repair first take it, too.
+    let grown = format!("dilate {boxes} --radius 0.5 -o OUT/d.ply --resolution 64 --inside odd --json");
+    let said = run_in(&folder, &grown).exits(0).json();
+    let before = said["result"]["pipeline"]["morphology"]["volume_before"].as_f64().expect("a number");
+    assert!((before / 1080.0 - 1.0).abs() < 0.005, "{before}");
+    // The sign of a distance and the reading of a field.
+    let inside = |rule: &str| {
+        let line = format!("sdf {boxes} -o OUT/{rule}.nrrd --resolution 40 --inside {rule} --json");
+        run_in(&folder, &line).exits(0).json()["result"]["distance"]["inside"].as_u64().expect("a number")
+    };
+    let (odd, positive) = (inside("odd") as f64, inside("positive") as f64);
+    assert!((odd / positive / (1080.0 / 1328.0) - 1.0).abs() < 0.05, "{odd} and {positive}");
+    assert_eq!(inside("nonzero") as f64, positive);
+    run_in(&folder, &format!("field a a={boxes} -o OUT/f.ply --resolution 64 --inside odd")).exits(0);
+    assert_volume(&solid(&folder, "f.ply"), 1080.0, 0.01);
+    let refused = format!("sdf {boxes} -o OUT/p.nrrd --sign pseudonormal --inside odd");
+    run_in(&folder, &refused).exits(2).says(&["--inside cannot change that", "hint: "]);
+    run_in(&folder, &format!("repair {boxes} -o OUT/p.ply --inside even")).exits(2).says(&["positive, nonzero, odd"]);
+}
+
+#[test]
+fn surfaces_inside_others_are_counted_whether_they_are_whole_or_not() {
+    let folder = folder();
+    let put = |name: &str, triangles: usize| {
+        let big = cuboid(DVec3::ZERO, DVec3::splat(8.0));
+        let mut mesh = cuboid(DVec3::splat(2.0), DVec3::splat(5.0));
+        mesh.triangles.truncate(triangles);
+        mesh.append(&big);
+        meshwright::io::write(folder.path().join(name), &mesh).expect("written");
+    };
+    put("whole.off", 12);
+    put("open.off", 11);
+    for name in ["whole", "open"] {
+        let run = run_in(&folder, &format!("repair OUT/{name}.off -o OUT/{name}.ply --resolution 32"));
+        run.exits(0).says(&["1 surface left out: inside of others, or outside of the result"]);
+        assert_volume(&solid(&folder, &format!("{name}.ply")), 512.0, 1e-12);
+    }
 }

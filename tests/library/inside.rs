@@ -253,3 +253,51 @@ fn bodies_inside_others_are_left_out_and_counted_but_by_odd_they_are_voids() {
         assert!((volume(&outcome) - expected).abs() < 1e-10, "{inside:?}");
     }
 }
+
+#[test]
+fn bodies_that_cross_or_have_holes_inside_others_are_counted_and_not_told_as_lost() {
+    let big = cube(0.0, 8.0, false);
+    let mut open = cube(2.0, 5.0, false);
+    open.triangles.pop();
+    let crossing = joined([cube(1.0, 3.0, false), cube(2.0, 4.0, false)]);
+    for (mesh, count) in [(joined([big.clone(), open.clone()]), 1), (joined([big.clone(), crossing.clone()]), 2)] {
+        let outcome = repair(&mesh, &options(32, Inside::Positive), &Progress::none()).expect("a solid");
+        let topology = outcome.report.topology.as_ref().expect("a repair has one");
+        assert_eq!((topology.buried, topology.lost_count, topology.is_large()), (count, 0, false));
+        assert_eq!((outcome.solid.triangles.len(), volume(&outcome)), (12, 512.0));
+        // Where each surface swaps the sides, they are voids.
+        let odd = repair(&mesh, &options(32, Inside::Odd), &Progress::none()).expect("a solid");
+        assert_eq!(odd.report.topology.as_ref().map(|topology| topology.buried), Some(0));
+        assert!(volume(&odd) < 499.0, "{}", volume(&odd));
+    }
+    // Of several operands: in a union they are gone, taken away they are not.
+    let operands = [big, open, crossing];
+    let by = |expression: &Expression| {
+        boolean(&operands, expression, &options(32, Inside::Positive), &Progress::none()).expect("a solid")
+    };
+    let union = by(&Expression::union(3));
+    assert_eq!((union.report.topology.as_ref().map(|topology| topology.buried), volume(&union)), (Some(3), 512.0));
+    let less = by(&Expression::difference(3));
+    assert_eq!(less.report.topology.as_ref().map(|topology| topology.buried), Some(0));
+    // Outside of what all have in common, too.
+    let far = cuboid(DVec3::splat(20.0), DVec3::splat(24.0));
+    let mut broken = cuboid(DVec3::splat(30.0), DVec3::splat(34.0));
+    broken.triangles.pop();
+    let common = boolean(
+        [&joined([operands[0].clone(), broken]), &joined([operands[0].clone(), far])],
+        &Expression::intersection(2),
+        &options(32, Inside::Positive),
+        &Progress::none(),
+    )
+    .expect("a solid");
+    assert_eq!(common.report.topology.map(|topology| topology.buried), Some(1));
+}
+
+#[test]
+fn a_body_that_is_there_twice_counts_once_by_every_rule() {
+    let twice = joined([cube(0.0, 4.0, false), cube(0.0, 4.0, false)]);
+    for inside in RULES {
+        let outcome = repair(&twice, &options(32, inside), &Progress::none()).expect("a solid");
+        assert_eq!((outcome.report.orient[0].duplicates_dropped, volume(&outcome)), (12, 64.0), "{inside:?}");
+    }
+}

@@ -43,6 +43,9 @@ pub struct TopologyReport {
     pub lost_count: usize,
     /// Their part of the volume of all bodies, 0 to 1.
     pub lost_share: f64,
+    /// Bodies that touch others, or have holes, and lie inside of the result or outside of it, so that it has no surface of theirs. Those that are closed
+    /// and touch nothing are counted in [`StandingReport::left_out`](super::StandingReport::left_out).
+    pub buried: usize,
     /// Bodies that touched no other and came out joined with one.
     pub fused: usize,
     /// Pieces into which single bodies came apart, beyond the first of each.
