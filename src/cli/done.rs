@@ -57,17 +57,20 @@ pub fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
 fn kept(pipeline: &Report) -> Vec<String> {
     let standing = &pipeline.standing;
     let mut parts = Vec::new();
-    let left_out = standing.left_out + pipeline.topology.as_ref().map_or(0, |topology| topology.buried);
+    // The same surfaces are counted by both, where both look at them.
+    let buried = pipeline.topology.as_ref().map_or(0, |topology| topology.buried);
+    let left_out = standing.left_out + buried.max(pipeline.exact.as_ref().map_or(0, |exact| exact.left_out));
     if left_out > 0 {
         let shells = words::plural(left_out, "surface");
         parts.push(format!("{shells} left out: inside of others, or outside of the result"));
     }
     let counts = &pipeline.triangles;
-    parts.push(match (counts.rebuilt, counts.made_up) {
-        (0, 0) => "every triangle was kept as it is".into(),
+    parts.push(match (counts.cut, counts.rebuilt, counts.made_up) {
+        (0, 0, 0) => "every triangle was kept as it is".into(),
         _ => {
-            let of = |kind: TriangleKind| format!("{} {}", words::count(counts.count(kind)), kind.word());
-            format!("of its triangles {} (--map shows which)", TriangleKind::ALL.map(of).join(", "))
+            let some = TriangleKind::BY_CHANGE.into_iter().filter(|&kind| counts.count(kind) > 0);
+            let of = some.map(|kind| format!("{} {}", words::count(counts.count(kind)), kind.word()));
+            format!("of its triangles {} (--map shows which)", of.collect::<Vec<_>>().join(", "))
         }
     });
     parts

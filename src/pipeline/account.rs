@@ -93,6 +93,8 @@ fn thin_regions(spans: &[Spans], planes: &[Plane], surface: &Surface, lattice: &
 /// Shares of rays and spans above which a user should know.
 const MANY_LOST: f64 = 0.02;
 const MANY_SILENT: f64 = 0.25;
+/// And the part of the volume that rounding may take from an exact result without a word.
+const ROUNDED: f64 = 1e-6;
 
 /// What a user should know of a report that is complete but for that.
 pub(super) fn warnings(report: &Report) -> Vec<Warning> {
@@ -105,6 +107,9 @@ pub(super) fn warnings(report: &Report) -> Vec<Warning> {
     let silent = share(report.ldi.silent_rays, report.ldi.rays);
     if silent > MANY_SILENT {
         warnings.push(Warning::SilentRays { share: silent });
+    }
+    if let Some(share) = report.exact.as_ref().map(|exact| exact.volume_error).filter(|share| *share > ROUNDED) {
+        warnings.push(Warning::Rounded { share });
     }
     if let Some(reason) = &report.ldi.made_by.fallback {
         warnings.push(Warning::Fallback { reason: reason.clone() });
@@ -149,6 +154,7 @@ pub(super) fn finished(mut outcome: Draft, apart: &Apart, stages: Stages<'_>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arrange::ArrangeReport;
 
     #[test]
     fn why_the_main_processor_stepped_in_is_a_line_of_the_report() {
@@ -157,5 +163,16 @@ mod tests {
         report.ldi.made_by.fallback = Some("it melted".into());
         let lines = warnings(&report);
         assert!(lines.len() == 1 && lines[0].to_string().contains("it melted"), "{lines:?}");
+    }
+
+    #[test]
+    fn a_volume_that_rounding_changes_by_more_than_a_millionth_is_told() {
+        let told = |volume_error| {
+            let exact = Some(ArrangeReport { volume_error, ..ArrangeReport::default() });
+            warnings(&Report { exact, ..Report::default() }).iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        assert!(told(0.9e-6).is_empty());
+        let lines = told(2e-6);
+        assert!(lines.len() == 1 && lines[0].contains("the volume by 0.0002 %"), "{lines:?}");
     }
 }

@@ -76,19 +76,21 @@ fn evaluate(
     let job = Job { expression, options, classes: &classes, h, progress };
     let draft = match apart.split(soup) {
         (rest, _) if rest.mesh.triangles.is_empty() => job.nothing_beside(&rest, standing)?,
-        (rest, whole) => match job.exact(&meshes, (&rest, &apart), &standing, &mut stages)? {
-            Some(draft) => draft,
-            None => match (job.beside(&rest, standing, &mut stages)?, whole) {
-                (Some(draft), _) => draft,
-                (None, whole) => {
-                    // What was made runs into what stands: all of it is made together.
-                    apart = apart.none_standing();
-                    job.alone(whole.unwrap_or(rest), h, &mut stages)?
-                }
-            },
-        },
+        (rest, whole) => {
+            match job.exact(&meshes, (&rest, &apart), &standing, &mut stages).map_err(|error| frame.error(error))? {
+                Some(draft) => draft,
+                None => match (job.beside(&rest, standing, &mut stages)?, whole) {
+                    (Some(draft), _) => draft,
+                    (None, whole) => {
+                        // What was made runs into what stands: all of it is made together.
+                        apart = apart.none_standing();
+                        job.alone(whole.unwrap_or(rest), h, &mut stages)?
+                    }
+                },
+            }
+        }
     };
     let mut draft: Draft = account::finished(draft, &apart, stages);
     draft.report.inside = options.inside;
-    Ok(draft.counted(&meshes).global(&frame).judged(operands, progress)?)
+    Ok(draft.global(&frame).counted(&given).judged(operands, progress)?)
 }
