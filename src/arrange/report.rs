@@ -20,8 +20,6 @@ pub struct ArrangeReport {
     pub cells: usize,
     /// Shells that faced the wrong way and were taken the other way round.
     pub turned: usize,
-    /// Closed surfaces of the operands of which nothing is in the result: they lie inside of others, or outside of what was asked for.
-    pub left_out: usize,
     /// How often the result was united with itself again, because triangles crossed once their vertices were rounded.
     pub rounds: usize,
     /// Vertices that were moved apart, by a few steps of the numbers in the file, where solids touched at an edge or a vertex alone.

@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 
+use super::ArrangeOptions;
 use super::cells::{Cells, Owner, gaps};
 use super::draft::{Draft, Kind, Rounding};
 use super::extract::{Face, extract};
@@ -15,7 +16,7 @@ use super::merge::merge;
 use super::near::Near;
 use super::refine::{Refined, refine};
 use super::solve;
-use crate::mesh::{TriMesh, flat_triangles, self_intersections};
+use crate::mesh::{TriMesh, flat_triangles, intersections_with, self_intersections};
 use crate::progress::{Progress, Stopped};
 
 /// How often a surface is united with itself before another way is tried.
@@ -86,8 +87,7 @@ pub(crate) struct Surface<'a> {
     pub(crate) fine: &'a Fine,
     /// The positions of the input's vertices as the result may have them, model units.
     pub(crate) input: &'a [DVec3],
-    /// A number for each triangle of the input: those with different numbers are not merged.
-    pub(crate) classes: &'a [u32],
+    pub(crate) options: &'a ArrangeOptions<'a>,
 }
 
 /// A volume that is off by less than this part is not worth another way.
@@ -125,13 +125,13 @@ impl Way {
         for number in 0..ROUNDS {
             progress.check()?;
             let mut mesh = draft.mesh(surface.fine, surface.input);
-            let mut offenders = offenders(&mesh, progress)?;
+            let mut offenders = surface.offenders(&draft, &mesh, progress)?;
             let mut separated = 0;
             if offenders.is_empty() {
                 separated = draft.separate(surface.fine, f64::from(1 << number));
                 if separated > 0 {
                     mesh = draft.mesh(surface.fine, surface.input);
-                    offenders = self::offenders(&mesh, progress)?;
+                    offenders = surface.offenders(&draft, &mesh, progress)?;
                 }
             }
             if offenders.is_empty() {
@@ -154,13 +154,25 @@ impl Way {
     }
 }
 
-/// The triangles that cross others or have no area, ascending.
-fn offenders(mesh: &TriMesh, progress: &Progress) -> Result<Vec<u32>, Stopped> {
-    let mut found: Vec<u32> = self_intersections(mesh, progress)?.into_iter().flatten().collect();
-    found.extend(flat_triangles(mesh));
-    found.sort_unstable();
-    found.dedup();
-    Ok(found)
+impl Surface<'_> {
+    /// The triangles that cross others or have no area, ascending. Where it is known which triangles of the input touched nothing, those that are still what they
+    /// were are not looked at against each other again.
+    fn offenders(&self, draft: &Draft, mesh: &TriMesh, progress: &Progress) -> Result<Vec<u32>, Stopped> {
+        let suspects = self.options.suspects;
+        let pairs = if suspects.is_empty() {
+            self_intersections(mesh, progress)?
+        } else {
+            let own = |v: &u32| matches!(draft.kinds[*v as usize], Kind::Own(_));
+            let marked = |(t, source): (&[u32; 3], &u32)| suspects[*source as usize] || !t.iter().all(own);
+            let marked: Vec<bool> = draft.triangles.iter().zip(&draft.sources).map(marked).collect();
+            intersections_with(mesh, &marked, progress)?
+        };
+        let mut found: Vec<u32> = pairs.into_iter().flatten().collect();
+        found.extend(flat_triangles(mesh));
+        found.sort_unstable();
+        found.dedup();
+        Ok(found)
+    }
 }
 
 /// From this round on vertices of the input are moved onto the grid like others.
@@ -197,7 +209,7 @@ fn united(draft: &Draft, reach: f64, surface: &Surface<'_>, progress: &Progress)
             kinds[n as usize] = kind;
         }
     }
-    let pairs = touching(&facets, progress)?;
+    let pairs = touching(&facets, |_| true, progress)?;
     let mut touched: Vec<u32> = pairs.iter().flatten().copied().collect();
     touched.sort_unstable();
     touched.dedup();
@@ -209,14 +221,21 @@ fn united(draft: &Draft, reach: f64, surface: &Surface<'_>, progress: &Progress)
     let cells = Cells::of(&refined, progress)?;
     let Some(winding) = cells.winding(&refined, 1, &One) else { return Ok(None) };
     let inside: Vec<bool> = winding.iter().map(|&winding| winding >= 1).collect();
-    let class = |t: u32| surface.classes.get(draft.sources[t as usize] as usize).copied().unwrap_or(0);
+    let class = |t: u32| surface.options.classes.get(draft.sources[t as usize] as usize).copied().unwrap_or(0);
     let faces = merge(&refined, extract(&refined, &cells, &inside), &class, progress)?;
     let rounding = Rounding { fine: surface.fine, kinds: &kinds, near: Some(&near), exact: false };
     Ok(Some(Draft::new(&refined, &faces, &rounding, |t| draft.sources[t as usize])))
 }
 
-/// The pairs of facets that touch elsewhere than at what they share.
-pub(crate) fn touching(facets: &Facets, progress: &Progress) -> Result<Vec<[u32; 2]>, Stopped> {
+/// The pairs of facets that touch elsewhere than at what they share, among those that may.
+pub(crate) fn touching(
+    facets: &Facets,
+    may_touch: impl Fn(u32) -> bool,
+    progress: &Progress,
+) -> Result<Vec<[u32; 2]>, Stopped> {
+    let list: Vec<u32> = (0..facets.len() as u32).filter(|&f| may_touch(f)).collect();
     let positions = facets.vertices.iter().map(|v| DVec3::from_array(v.map(f64::from))).collect();
-    self_intersections(&TriMesh { positions, triangles: facets.corners.clone() }, progress)
+    let triangles = list.iter().map(|&f| facets.corners[f as usize]).collect();
+    let pairs = self_intersections(&TriMesh { positions, triangles }, progress)?;
+    Ok(pairs.into_iter().map(|pair| pair.map(|n| list[n as usize])).collect())
 }

@@ -12,7 +12,7 @@ use super::refine::{Refined, refine};
 use super::round::{Rounded, Surface, round, touching};
 use super::turn::Turned;
 use super::{ArrangeError, ArrangeReport, Opening};
-use crate::ldi::{Expression, Inside, Operands};
+use crate::ldi::{Expression, Operands};
 use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
 use crate::progress::Progress;
@@ -22,12 +22,13 @@ use crate::progress::Progress;
 pub struct ArrangeOptions<'a> {
     /// The result in terms of the operands.
     pub expression: &'a Expression,
-    /// Which winding numbers of an operand are inside.
-    pub inside: Inside,
     /// Whether shells that face the wrong way are turned over.
     pub orient: OrientMode,
     /// Whether all coordinates of the result are to be `f32` numbers.
     pub single: bool,
+    /// For each triangle whether it may touch another one, if that has been found out for the coordinates of the result (see
+    /// [`contacts`](crate::shells::contacts)); empty: any may.
+    pub suspects: &'a [bool],
     /// A number for each triangle, or none at all: triangles with different numbers are not merged where they lie in one plane.
     pub classes: &'a [u32],
 }
@@ -64,7 +65,7 @@ pub fn arrange(
         false => mesh.positions.clone(),
     };
     let fine = Fine::of(mesh.positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max), options.single);
-    let (refined, kinds, pairs) = refined(mesh, &fine, progress)?;
+    let (refined, kinds, pairs) = refined(mesh, &fine, options.suspects, progress)?;
     let owner = Turned::none(operands, mesh.triangles.len());
     let open = gaps(&refined, &owner);
     if !open.is_empty() {
@@ -74,11 +75,11 @@ pub fn arrange(
     let Some(winding) = cells.winding(&refined, operands.count(), &owner) else {
         return Err(opened(&refined, &[], &fine, operands.count()));
     };
-    let (owner, winding) = match options.orient == OrientMode::Auto && options.inside.needs_outward() {
+    let (owner, winding) = match options.orient == OrientMode::Auto && operands.inside.needs_outward() {
         true => Turned::outward(mesh, operands, (&refined, &cells), winding),
         false => (owner, winding),
     };
-    let inside = inside(&winding, operands.count(), options);
+    let inside = inside(&winding, operands, options.expression);
     let class = |t: u32| options.classes.get(t as usize).copied().unwrap_or(0);
     let found = extract(&refined, &cells, &inside);
     let faces = merge(&refined, found, &class, progress)?;
@@ -95,14 +96,7 @@ pub fn arrange(
     if faces.is_empty() {
         return Ok(Arranged { report, ..Arranged::default() });
     }
-    let surface = Surface {
-        refined: &refined,
-        faces: &faces,
-        kinds: &kinds,
-        fine: &fine,
-        input: &input,
-        classes: options.classes,
-    };
+    let surface = Surface { refined: &refined, faces: &faces, kinds: &kinds, fine: &fine, input: &input, options };
     let Rounded { mesh, sources, rounds, separated, volume_error } =
         round(&surface, progress)?.ok_or(ArrangeError::Rounding)?;
     (report.rounds, report.separated, report.volume_error) = (rounds as usize, separated, volume_error);
@@ -110,14 +104,20 @@ pub fn arrange(
 }
 
 /// The triangles on the lattice, cut where they touch; what each vertex is; and how many pairs touch.
-fn refined(mesh: &TriMesh, fine: &Fine, progress: &Progress) -> Result<(Refined, Vec<Kind>, usize), ArrangeError> {
+fn refined(
+    mesh: &TriMesh,
+    fine: &Fine,
+    suspects: &[bool],
+    progress: &Progress,
+) -> Result<(Refined, Vec<Kind>, usize), ArrangeError> {
     let places: Vec<[i32; 3]> = mesh.positions.iter().map(|&p| fine.place(p)).collect();
     let (facets, numbers) = Facets::new(&places, &mesh.triangles);
     let mut kinds = vec![Kind::Moved; facets.vertices.len()];
     for (v, &n) in numbers.iter().enumerate().rev() {
         kinds[n as usize] = Kind::Own(v as u32);
     }
-    let pairs = touching(&facets, progress)?;
+    let may_touch = |f: u32| suspects.is_empty() || facets.covers(f).iter().any(|c| suspects[c.triangle as usize]);
+    let pairs = touching(&facets, may_touch, progress)?;
     if pairs.len() > MOST_PAIRS {
         return Err(ArrangeError::Crowded { pairs: pairs.len(), most: MOST_PAIRS });
     }
@@ -135,13 +135,13 @@ fn opened(refined: &Refined, open: &[Gap], fine: &Fine, operands: usize) -> Arra
 }
 
 /// For each cell whether it is inside of the result.
-fn inside(winding: &[i32], operands: usize, options: &ArrangeOptions<'_>) -> Vec<bool> {
-    let mut of_operands = vec![false; operands];
+fn inside(winding: &[i32], operands: &Operands, expression: &Expression) -> Vec<bool> {
+    let mut of_operands = vec![false; operands.count()];
     let cell = |winding: &[i32]| {
-        of_operands.iter_mut().zip(winding).for_each(|(inside, &w)| *inside = options.inside.holds(w));
-        options.expression.evaluate(&of_operands)
+        of_operands.iter_mut().zip(winding).for_each(|(inside, &w)| *inside = operands.inside.holds(w));
+        expression.evaluate(&of_operands)
     };
-    winding.chunks(operands).map(cell).collect()
+    winding.chunks(operands.count()).map(cell).collect()
 }
 
 /// The segments along which triangles of a mesh cross each other, model units: where a boolean would cut.
@@ -150,7 +150,7 @@ fn inside(winding: &[i32], operands: usize, options: &ArrangeOptions<'_>) -> Vec
 /// [`ArrangeError::Crowded`] where there are too many, and a stop.
 pub fn crossing_curves(mesh: &TriMesh, progress: &Progress) -> Result<Vec<[DVec3; 2]>, ArrangeError> {
     let fine = Fine::of(mesh.positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max), false);
-    let (refined, _, _) = refined(mesh, &fine, progress)?;
+    let (refined, _, _) = refined(mesh, &fine, &[], progress)?;
     let point = |p: u32| refined.points.approximate(p) * fine.step;
     Ok(refined.curves.iter().map(|curve| curve.map(point)).collect())
 }

@@ -57,9 +57,7 @@ pub fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
 fn kept(pipeline: &Report) -> Vec<String> {
     let standing = &pipeline.standing;
     let mut parts = Vec::new();
-    // The same surfaces are counted by both, where both look at them.
-    let buried = pipeline.topology.as_ref().map_or(0, |topology| topology.buried);
-    let left_out = standing.left_out + buried.max(pipeline.exact.as_ref().map_or(0, |exact| exact.left_out));
+    let left_out = standing.left_out + pipeline.topology.as_ref().map_or(0, |topology| topology.buried);
     if left_out > 0 {
         let shells = words::plural(left_out, "surface");
         parts.push(format!("{shells} left out: inside of others, or outside of the result"));

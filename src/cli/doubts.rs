@@ -1,6 +1,5 @@
 //! What a lattice may have harmed, in words: bodies that changed, and walls and gaps that it does not hold.
 
-use super::exact;
 use super::report::RunReport;
 use super::table::Row;
 use super::words::{self, UnitName};
@@ -9,7 +8,7 @@ use crate::pipeline::{LostBody, Report, ThinRegion, Topology, TopologyReport};
 /// All of it, as rows of the summary.
 pub fn rows(pipeline: &Report, unit: UnitName<'_>) -> Vec<Row> {
     let mut rows: Vec<Row> = thin_places(pipeline, unit).into_iter().map(|text| ("thin", text)).collect();
-    if let Some(topology) = pipeline.topology.as_ref().filter(|_| !exact::is_all(pipeline)) {
+    if let Some(topology) = &pipeline.topology {
         rows.extend(changes(topology).into_iter().map(|text| ("changed", text)));
         rows.extend(lost_bodies(topology, unit).into_iter().map(|text| ("lost", text)));
     }

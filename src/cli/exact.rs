@@ -4,9 +4,8 @@ use super::table::Row;
 use super::words;
 use crate::pipeline::{Plan, Report};
 
-/// Whether all of a result is exact: cut where surfaces cross, or as it was, without any voxel. What it has and the input has not is then the
-/// truth about the input.
-pub fn is_all(pipeline: &Report) -> bool {
+/// Whether all of a result is exact: cut where surfaces cross, or as it was, without any voxel.
+fn is_all(pipeline: &Report) -> bool {
     pipeline.exact.is_some() && !pipeline.lattice && !is_changed(pipeline)
 }
 
@@ -56,13 +55,14 @@ pub fn details(pipeline: &Report) -> Vec<Row> {
     rows.into_iter().map(|text| ("exact", text)).collect()
 }
 
-/// What `--plan` says.
-pub fn planned(plan: &Plan) -> String {
-    match plan.touching {
-        0 => "nothing touches anything; no voxels".into(),
+/// What `--plan` says of what will be cut.
+pub fn planned(plan: &Plan) -> Option<String> {
+    let voxels = if plan.dims == [0; 3] { "no voxels" } else { "inputs with holes are made whole first" };
+    plan.exact.then(|| match plan.touching {
+        0 => format!("nothing touches anything; {voxels}"),
         n => format!(
-            "about {} to be cut, where they touch or cross others; no voxels",
+            "about {} to be cut, where they touch or cross others; {voxels}",
             words::plural(n as usize, "triangle")
         ),
-    }
+    })
 }

@@ -1,7 +1,7 @@
 //! What may be wrong with a finished run: a result that is not what was asked for, or more memory than was allowed.
 
 use super::report::RunReport;
-use super::{doubts, exact, words};
+use super::{doubts, words};
 
 /// More than this share of the walls passing between voxels: the resolution does not hold the shape.
 /// A few always do, where a ray grazes an edge: of the meshes in `testdata/`, and of scans and parts
@@ -34,8 +34,7 @@ pub fn lost(report: &RunReport) -> Vec<String> {
                 change.voxel_that_holds.map_or(String::new(), |h| format!("; half of it is {} thick or more", words::number(h)))
             ));
         }
-        let judged = pipeline.topology.as_ref().filter(|_| !exact::is_all(pipeline));
-        if let Some(topology) = judged.filter(|topology| topology.is_large()) {
+        if let Some(topology) = pipeline.topology.as_ref().filter(|topology| topology.is_large()) {
             sentences
                 .push(format!("the result is not what the input describes: {}", doubts::changes(topology).join("; ")));
         }

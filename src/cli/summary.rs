@@ -162,10 +162,11 @@ fn votes(pipeline: &Report, unit: UnitName<'_>) -> Vec<Row> {
 
 /// The rows of `--plan`.
 pub fn plan(plan: &Plan, unit: UnitName<'_>) -> Vec<Row> {
-    let lattice = match (plan.exact, plan.dims) {
-        (true, _) => vec![("exact", exact::planned(plan))],
-        (false, [0, 0, 0]) => vec![("voxel", "none: every closed surface stays as it is".into())],
-        (false, dims) => vec![
+    let mut rows: Vec<Row> = exact::planned(plan).into_iter().map(|text| ("exact", text)).collect();
+    let lattice = match plan.dims {
+        [0, 0, 0] if plan.exact => vec![],
+        [0, 0, 0] => vec![("voxel", "none: every closed surface stays as it is".into())],
+        dims => vec![
             ("voxel", voxel(plan.voxel, dims, unit)),
             ("surface", format!("about {}", words::plural(plan.voxels_near_surface as usize, "voxel"))),
         ],
@@ -175,7 +176,8 @@ pub fn plan(plan: &Plan, unit: UnitName<'_>) -> Vec<Row> {
         ("memory", format!("about {}", words::bytes(plan.memory))),
         ("time", format!("about {} on one core", words::seconds(plan.seconds))),
     ];
-    lattice.into_iter().chain(rest).collect()
+    rows.extend(lattice.into_iter().chain(rest));
+    rows
 }
 
 /// As many objects of a file are listed by name.

@@ -38,7 +38,7 @@ pub use mass::{MassProperties, Overhang};
 pub use nearest_point::{Feature, Shape};
 pub use plane::Plane;
 pub use pseudonormals::Pseudonormals;
-pub(crate) use self_intersection::intersecting_groups;
+pub(crate) use self_intersection::{intersecting_groups, intersections_with};
 pub use self_intersection::{intersecting_triangles, self_intersections};
 pub use solid::{NotSolid, Solid, SolidError};
 pub use submesh::Submesh;

@@ -38,6 +38,32 @@ pub fn self_intersections(mesh: &TriMesh, progress: &Progress) -> Result<Vec<[u3
     Ok(pairs)
 }
 
+/// The same of the pairs in which one triangle at least is marked.
+pub(crate) fn intersections_with(
+    mesh: &TriMesh,
+    marked: &[bool],
+    progress: &Progress,
+) -> Result<Vec<[u32; 2]>, Stopped> {
+    let scene = Scene::new(mesh);
+    let mut nodes: Vec<Vec<bool>> = Vec::new();
+    for (level, boxes) in scene.levels.iter().enumerate() {
+        let any = |n: usize| match level {
+            0 => scene.items[LEAF * n..(LEAF * (n + 1)).min(scene.items.len())].iter().any(|i| marked[i.id as usize]),
+            _ => nodes[level - 1][2 * n..(2 * n + 2).min(nodes[level - 1].len())].contains(&true),
+        };
+        let marks = (0..boxes.len()).map(any).collect();
+        nodes.push(marks);
+    }
+    let lists = scene.tasks().into_par_iter().map(|task| {
+        let mut sink = Marked { marked, nodes: &nodes, pairs: Vec::new() };
+        scene.visit(task, &mut sink, progress).map(|()| sink.pairs)
+    });
+    let mut pairs: Vec<[u32; 2]> = lists.collect::<Result<Vec<_>, _>>()?.concat();
+    pairs.extend(scene.copies.iter().map(|&[copy, first]| [first, copy]));
+    pairs.par_sort_unstable();
+    Ok(pairs)
+}
+
 /// The triangles that intersect another one in the sense of
 /// [`triangles_intersect`](super::triangles_intersect), ascending. Memory stays proportional to the
 /// mesh, and parts of it where every triangle has been found to intersect are not searched again.
@@ -146,6 +172,30 @@ impl Sink for Pairs {
     fn hit(&mut self, scene: &Scene, items: [usize; 2]) {
         let [a, b] = items.map(|i| scene.items[i].id);
         self.0.push([a.min(b), a.max(b)]);
+    }
+
+    fn leave(&self, _: Task) {}
+}
+
+/// Pairs of which one triangle at least is marked, or lies in a marked subtree.
+struct Marked<'a> {
+    marked: &'a [bool],
+    nodes: &'a [Vec<bool>],
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Sink for Marked<'_> {
+    fn settled(&self, Task { level, nodes }: Task) -> bool {
+        nodes.iter().all(|&n| !self.nodes[level][n])
+    }
+
+    fn known(&self, scene: &Scene, items: [usize; 2]) -> bool {
+        items.iter().all(|&i| !self.marked[scene.items[i].id as usize])
+    }
+
+    fn hit(&mut self, scene: &Scene, items: [usize; 2]) {
+        let [a, b] = items.map(|i| scene.items[i].id);
+        self.pairs.push([a.min(b), a.max(b)]);
     }
 
     fn leave(&self, _: Task) {}

@@ -17,14 +17,24 @@ const EXACT_SECONDS: [f64; 3] = [0.008, 6e-6, 120e-6];
 /// Triangles of the result besides those of the input, per triangle that touches others.
 const TRIANGLES_PER_CUT: f64 = 1.5;
 
+/// Which way a run will go.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Way {
+    /// What touches is cut exactly.
+    Exact,
+    /// The operands with these numbers are made whole by themselves, from voxels, and all are cut exactly after that.
+    Sealed(Vec<usize>),
+    /// What touches, or has holes, is made from voxels.
+    Voxel,
+}
+
 /// What a look at operands tells of a run over them.
 pub(super) struct Ahead {
     /// What has to be made of the operands: all but the shells that stand as they are, or are left out.
     pub rest: TriMesh,
     /// How many of its triangles touch others.
     pub touching: usize,
-    /// Whether it will be cut exactly.
-    pub exact: bool,
+    pub way: Way,
 }
 
 impl Ahead {
@@ -36,26 +46,30 @@ impl Ahead {
         let apart = Apart::find(&soup, &Expression::union(operands.len()), options, &progress)?;
         let rest = apart.rest(&soup).mesh;
         let keeps = options.fit.is_some_and(|fit| !fit.rebuild);
-        let exact = match options.method {
-            _ if rest.triangles.is_empty() || !keeps => false,
-            Method::Voxel => false,
+        let way = match options.method {
+            _ if rest.triangles.is_empty() || !keeps => Way::Voxel,
+            Method::Voxel => Way::Voxel,
             // There is no other way.
-            Method::Exact => true,
-            Method::Auto => balances(operands, &apart) || apart.open_balances(),
+            Method::Exact => Way::Exact,
+            Method::Auto => match unbalanced(operands, &apart) {
+                open if open.is_empty() || apart.open_balances() => Way::Exact,
+                open if operands.len() > 1 => Way::Sealed(open),
+                _ => Way::Voxel,
+            },
         };
         let touching = match apart.touching() {
             // Nothing has been looked for where no surface could have stood.
-            0 if exact => intersecting_triangles(&rest, &progress)?.len(),
+            0 if way != Way::Voxel => intersecting_triangles(&rest, &progress)?.len(),
             touching => touching,
         };
-        Ok(Self { rest, touching, exact })
+        Ok(Self { rest, touching, way })
     }
 }
 
-/// Whether the triangles of operands, those of shells that are decided left out, run along each edge one way as often as the other. What is cut where it
-/// crosses still does.
-fn balances(operands: &[&TriMesh], apart: &Apart) -> bool {
-    (0u32..).zip(operands).all(|(operand, mesh)| {
+/// The operands whose triangles, those of shells that are decided left out, run along some edge one way more often than the other: they have holes, unless
+/// edges meet once all is cut. What balances still does after that.
+fn unbalanced(operands: &[&TriMesh], apart: &Apart) -> Vec<usize> {
+    let balances = |operand: u32, mesh: &TriMesh| {
         let welded = welded_triangles(mesh).into_iter().zip(0u32..);
         let open = welded.filter(|&(corners, t)| !has_repeated_index(corners) && apart.is_open(operand, t));
         let triangles: Vec<[u32; 3]> = open.map(|(corners, _)| corners).collect();
@@ -66,7 +80,8 @@ fn balances(operands: &[&TriMesh], apart: &Apart) -> bool {
             balanced &= 2 * up == edge.count();
         });
         balanced
-    })
+    };
+    (0u32..).zip(operands).filter(|(n, mesh)| !balances(*n, mesh)).map(|(n, _)| n as usize).collect()
 }
 
 impl Plan {
@@ -81,6 +96,20 @@ impl Plan {
             memory: sum(EXACT_BYTES) as u64,
             seconds: sum(EXACT_SECONDS),
             ..standing
+        }
+    }
+
+    /// For operands of which some are made whole first, each of which costs one of `parts`, and are then cut with the others like `cut`.
+    pub(super) fn of_sealed(parts: impl Iterator<Item = Self>, cut: Self) -> Self {
+        let sealed = parts.reduce(|one, next| Self { triangles: one.triangles + next.triangles, ..one.then(next) });
+        let Some(sealed) = sealed else { return cut };
+        Self {
+            exact: true,
+            touching: cut.touching,
+            triangles: cut.triangles.max(sealed.triangles),
+            memory: sealed.memory.max(cut.memory),
+            seconds: sealed.seconds + cut.seconds,
+            ..sealed
         }
     }
 }
@@ -102,27 +131,29 @@ mod tests {
     fn what_is_closed_and_crosses_goes_the_exact_way_and_what_is_open_does_not() {
         let (one, two) = (cuboid(DVec3::ZERO, DVec3::ONE), cuboid(DVec3::splat(0.5), DVec3::splat(1.5)));
         let both = ahead(&[&one, &two], Method::Auto);
-        assert!(both.exact && both.touching > 6, "{}", both.touching);
+        assert!(both.way == Way::Exact && both.touching > 6, "{}", both.touching);
         // As one file, too, and torn apart at its vertices.
         let mut joined = one.clone();
         joined.append(&two);
-        assert!(ahead(&[&joined], Method::Auto).exact);
+        assert_eq!(ahead(&[&joined], Method::Auto).way, Way::Exact);
         let soup = TriMesh {
             positions: joined.triangles.iter().flatten().map(|&v| joined.positions[v as usize]).collect(),
             triangles: (0..24).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
         };
-        assert!(ahead(&[&soup], Method::Auto).exact);
-        assert!(!ahead(&[&one, &two], Method::Voxel).exact);
+        assert_eq!(ahead(&[&soup], Method::Auto).way, Way::Exact);
+        assert_eq!(ahead(&[&one, &two], Method::Voxel).way, Way::Voxel);
         let mut open = two.clone();
         open.triangles.pop();
-        assert!(!ahead(&[&one, &open], Method::Auto).exact);
+        assert_eq!(ahead(&[&open], Method::Auto).way, Way::Voxel);
+        // Beside others it is made whole first.
+        assert_eq!(ahead(&[&one, &open], Method::Auto).way, Way::Sealed(vec![1]));
         // Neighbours that face opposite ways are turned first.
         let mut mixed = two.clone();
         mixed.triangles[3].swap(0, 1);
-        assert!(ahead(&[&one, &mixed], Method::Auto).exact);
+        assert_eq!(ahead(&[&one, &mixed], Method::Auto).way, Way::Exact);
         // What stands is not cut.
         let apart = ahead(&[&one, &cuboid(DVec3::splat(2.0), DVec3::splat(3.0))], Method::Auto);
-        assert!(!apart.exact && apart.rest.triangles.is_empty());
+        assert!(apart.way == Way::Voxel && apart.rest.triangles.is_empty());
     }
 
     #[test]
@@ -136,6 +167,6 @@ mod tests {
             triangles: vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [0, 2, 3]],
         });
         let found = ahead(&[&torn], Method::Auto);
-        assert!(found.exact && found.touching == 4, "{}", found.touching);
+        assert!(found.way == Way::Exact && found.touching == 4, "{}", found.touching);
     }
 }

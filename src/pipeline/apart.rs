@@ -24,8 +24,10 @@ pub(super) struct Apart {
     pub buried: Vec<bool>,
     /// Whether shells of which it says anything stand in this run; else all go through voxels.
     stand: bool,
-    /// For each operand and each of its triangles the shell; nothing for triangles that were dropped.
-    shell_of: Vec<Vec<Option<u32>>>,
+    /// For each operand and each of its triangles its number in the soup; nothing for triangles that were dropped.
+    in_soup: Vec<Vec<Option<u32>>>,
+    /// Whether contacts have been looked for.
+    looked: bool,
     /// Places, connected through vertices, where triangles touch others.
     crossings: usize,
 }
@@ -78,9 +80,9 @@ impl Apart {
             true => buried(&mesh, &shells, &contacts, &asked, progress)?,
             false => vec![false; shells.list.len()],
         };
-        let shell_of = shell_of(soup, &shells);
+        let in_soup = in_soup(soup);
         let crossings = places(&soup.mesh, &contacts.touched);
-        Ok(Self { shells, contacts, truth, buried, stand: keeps, shell_of, crossings })
+        Ok(Self { shells, contacts, truth, buried, stand: keeps, in_soup, looked: worth_looking, crossings })
     }
 
     /// What becomes of a shell in this run.
@@ -95,12 +97,22 @@ impl Apart {
 
     /// The number of operands.
     pub(super) fn operands(&self) -> usize {
-        self.shell_of.len()
+        self.in_soup.len()
     }
 
     /// The shell of a triangle of an operand.
     pub(super) fn shell_of(&self, operand: u32, triangle: u32) -> Option<u32> {
-        self.shell_of[operand as usize].get(triangle as usize).copied().flatten()
+        self.in_soup(operand, triangle).map(|t| self.shells.of[t as usize])
+    }
+
+    fn in_soup(&self, operand: u32, triangle: u32) -> Option<u32> {
+        self.in_soup[operand as usize].get(triangle as usize).copied().flatten()
+    }
+
+    /// Whether a triangle of an operand touches another one, as far as that is known.
+    pub(super) fn may_touch(&self, operand: u32, triangle: u32) -> bool {
+        let is_touched = |t: u32| self.contacts.touched[t as usize];
+        !self.looked || self.in_soup(operand, triangle).is_none_or(is_touched)
     }
 
     /// Whether a triangle of an operand is not decided: its shell does not stand, or it is of none.
@@ -206,12 +218,12 @@ impl Apart {
     }
 }
 
-fn shell_of(soup: &Soup, shells: &Shells) -> Vec<Vec<Option<u32>>> {
+fn in_soup(soup: &Soup) -> Vec<Vec<Option<u32>>> {
     let mut of: Vec<Vec<Option<u32>>> = vec![Vec::new(); soup.operands.count()];
-    for (t, (&source, &shell)) in soup.source.iter().zip(&shells.of).enumerate() {
-        let list = &mut of[soup.operands.of(t as u32)];
+    for (t, &source) in (0u32..).zip(&soup.source) {
+        let list = &mut of[soup.operands.of(t)];
         list.resize(list.len().max(source as usize + 1), None);
-        list[source as usize] = Some(shell);
+        list[source as usize] = Some(t);
     }
     of
 }

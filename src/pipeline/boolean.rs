@@ -1,6 +1,7 @@
 //! Booleans of meshes as they really are, and repair: the boolean of one.
 
 use super::apart::Apart;
+use super::exact::Exact;
 use super::frame::Frame;
 use super::order::Ordered;
 use super::rebuild::Job;
@@ -67,30 +68,59 @@ fn evaluate(
     let h = sizing::spacing(&bounds, options.voxel)?;
     plan::check_standing(&meshes, options.max_memory)?;
 
-    let mut stages = Stages::new(progress);
-    stages.begin(Stage::Orient)?;
-    let soup = Soup::of(&meshes, options.orient, progress)?.with_inside(options.inside);
-    stages.begin(Stage::Shells)?;
-    let mut apart = Apart::find(&soup, expression, options, progress)?;
-    let standing = apart.surface(&soup, &meshes, (options, &classes), h, progress)?;
-    let job = Job { expression, options, classes: &classes, h, progress };
-    let draft = match apart.split(soup) {
-        (rest, _) if rest.mesh.triangles.is_empty() => job.nothing_beside(&rest, standing)?,
-        (rest, whole) => {
-            match job.exact(&meshes, (&rest, &apart), &standing, &mut stages).map_err(|error| frame.error(error))? {
-                Some(draft) => draft,
-                None => match (job.beside(&rest, standing, &mut stages)?, whole) {
-                    (Some(draft), _) => draft,
-                    (None, whole) => {
-                        // What was made runs into what stands: all of it is made together.
-                        apart = apart.none_standing();
-                        job.alone(whole.unwrap_or(rest), h, &mut stages)?
-                    }
-                },
-            }
-        }
-    };
-    let mut draft: Draft = account::finished(draft, &apart, stages);
+    let task = Task { meshes: &meshes, classes: &classes, expression, options, h, progress };
+    let mut draft = task.draft().map_err(|error| frame.error(error))?;
     draft.report.inside = options.inside;
     Ok(draft.global(&frame).counted(&given).judged(operands, progress)?)
+}
+
+/// A boolean of operands near the origin.
+#[derive(Clone, Copy)]
+pub(super) struct Task<'a> {
+    pub meshes: &'a [&'a TriMesh],
+    /// For each operand a number for each of its triangles, or nothing: what has different numbers is kept apart.
+    pub classes: &'a [Vec<u32>],
+    pub expression: &'a Expression,
+    pub options: &'a Options,
+    /// The voxel size, model units.
+    pub h: f64,
+    pub progress: &'a Progress,
+}
+
+impl Task<'_> {
+    /// Shells that touch nothing stay; what touches is cut exactly, or, with holes, made from voxels; of several operands those with
+    /// holes are made whole first.
+    pub(super) fn draft(&self) -> Result<Draft, BooleanError> {
+        let Self { meshes, classes, expression, options, h, progress } = *self;
+        let mut stages = Stages::new(progress);
+        stages.begin(Stage::Orient)?;
+        let soup = Soup::of(meshes, options.orient, progress)?.with_inside(options.inside);
+        stages.begin(Stage::Shells)?;
+        let mut apart = Apart::find(&soup, expression, options, progress)?;
+        let standing = apart.surface(&soup, meshes, (options, classes), h, progress)?;
+        let job = Job { expression, options, classes, h, progress };
+        let (rest, whole) = apart.split(soup);
+        if rest.mesh.triangles.is_empty() {
+            let draft = job.nothing_beside(&rest, standing)?;
+            return Ok(account::finished(draft, &apart, stages));
+        }
+        let exact = job.exact(meshes, (&rest, &apart), &standing, &mut stages)?;
+        if let Exact::Done(draft) = exact {
+            return Ok(account::finished(draft, &apart, stages));
+        }
+        if let Exact::Open(closed) = exact
+            && let Some(draft) = self.sealed(&closed, &mut stages)?
+        {
+            return Ok(account::finished(draft, &apart, stages));
+        }
+        let draft = match job.beside(&rest, standing, &mut stages)? {
+            Some(draft) => draft,
+            None => {
+                // What was made runs into what stands: all of it is made together.
+                apart = apart.none_standing();
+                job.alone(whole.unwrap_or(rest), h, &mut stages)?
+            }
+        };
+        Ok(account::finished(draft, &apart, stages))
+    }
 }

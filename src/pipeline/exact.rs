@@ -14,12 +14,24 @@ use crate::pipeline::Precision;
 use crate::progress::Stage;
 use crate::survey::Soup;
 
+/// What came of the exact way.
+pub(super) enum Exact {
+    /// The result.
+    Done(Draft),
+    /// There is none, because operands have holes: for each whether it is closed.
+    Open(Vec<bool>),
+    /// It is not to be gone, or leads nowhere.
+    None,
+}
+
 /// Triangles of several operands, one operand after another, with where they come from.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pile {
     pub mesh: TriMesh,
     pub counts: Vec<usize>,
     pub sources: Vec<TriangleSource>,
+    /// For each triangle whether it may touch another one; empty where that is not known.
+    pub suspects: Vec<bool>,
 }
 
 impl Pile {
@@ -40,7 +52,8 @@ impl Pile {
         let mut pile = Self::default();
         for (operand, mesh) in (0u32..).zip(operands) {
             let open = (0..mesh.triangles.len() as u32).filter(|&t| apart.is_open(operand, t));
-            pile.add(mesh, open.map(|triangle| (triangle, TriangleSource::Operand { operand, triangle })));
+            pile.add(mesh, open.clone().map(|triangle| (triangle, TriangleSource::Operand { operand, triangle })));
+            pile.suspects.extend(open.map(|t| apart.may_touch(operand, t)));
         }
         pile
     }
@@ -57,18 +70,18 @@ impl Pile {
 }
 
 impl Job<'_> {
-    /// The exact result made of what stands and of the shells that touch; `None` where the exact way cannot be gone and need not.
+    /// The exact result made of what stands and of the shells that touch.
     pub(super) fn exact(
         &self,
         operands: &[&TriMesh],
         (rest, apart): (&Soup, &Apart),
         standing: &Standing,
         stages: &mut Stages<'_>,
-    ) -> Result<Option<Draft>, BooleanError> {
+    ) -> Result<Exact, BooleanError> {
         let method = self.options.method;
         let keeps = self.options.fit.is_some_and(|fit| !fit.rebuild);
         if method == Method::Voxel || !keeps {
-            return Ok(None);
+            return Ok(Exact::None);
         }
         stages.begin(Stage::Arrange)?;
         let mut refused = match self.arranged(&Pile::given(operands, apart)) {
@@ -82,13 +95,14 @@ impl Job<'_> {
             refused = match self.arranged(&Pile::oriented(rest)) {
                 Ok(draft) => return self.joined(draft, standing),
                 Err(ArrangeError::Stopped(stopped)) => return Err(stopped.into()),
-                Err(_) => refused,
+                Err(error) => error,
             };
         }
-        if method == Method::Exact {
-            return Err(BooleanError::NotExact(refused));
+        match refused {
+            refused if method == Method::Exact => Err(BooleanError::NotExact(refused)),
+            ArrangeError::Open { closed, .. } => Ok(Exact::Open(closed)),
+            _ => Ok(Exact::None),
         }
-        Ok(None)
     }
 
     /// The exact result of closed operands.
@@ -104,12 +118,12 @@ impl Job<'_> {
         let classes: Vec<u32> = if any { pile.sources.iter().map(class).collect() } else { Vec::new() };
         let asked = ArrangeOptions {
             expression,
-            inside: options.inside,
             orient: options.orient,
             single: options.precision == Precision::Single,
+            suspects: &pile.suspects,
             classes: &classes,
         };
-        let operands = Operands::new(pile.counts.iter().copied());
+        let operands = Operands::new(pile.counts.iter().copied()).with_inside(options.inside);
         let Arranged { mesh, sources, report } = arrange(&pile.mesh, &operands, &asked, progress)?;
         let lattice = Lattice { origin: DVec3::ZERO, h: self.h, dims: IVec3::ZERO };
         let report = Report { voxel: self.h, exact: Some(report), ..Report::default() };
@@ -117,19 +131,22 @@ impl Job<'_> {
         Ok(Draft { mesh, sources, lattice, report })
     }
 
-    /// What stands with what was cut beside it; `None` if rounding made the two touch.
-    fn joined(&self, draft: Draft, standing: &Standing) -> Result<Option<Draft>, BooleanError> {
+    /// What stands with what was cut beside it, unless rounding made the two touch.
+    fn joined(&self, draft: Draft, standing: &Standing) -> Result<Exact, BooleanError> {
         if draft.mesh.triangles.is_empty() && standing.mesh.triangles.is_empty() {
             let alone = self.expression.operand_count() == 1;
             let why = if alone { NothingEnclosed::Nothing } else { NothingEnclosed::NoCommonPart };
             return Err(why.into());
         }
         if touch(&draft.mesh, &standing.mesh, self.progress)? {
-            return Ok(None);
+            return match self.options.method {
+                Method::Exact => Err(BooleanError::NotExact(ArrangeError::Rounding)),
+                _ => Ok(Exact::None),
+            };
         }
         let Standing { mut mesh, mut sources } = standing.clone();
         mesh.append(&draft.mesh);
         sources.extend(draft.sources);
-        Ok(Some(Draft { mesh, sources, ..draft }))
+        Ok(Exact::Done(Draft { mesh, sources, ..draft }))
     }
 }

@@ -31,6 +31,7 @@ mod plan;
 mod rebuild;
 mod refine;
 mod report;
+mod seal;
 mod sizing;
 mod source;
 mod stages;

@@ -3,10 +3,10 @@
 use glam::DVec3;
 use serde::Serialize;
 
-use super::ahead::Ahead;
+use super::ahead::{Ahead, Way};
 use super::frame::Frame;
 use super::outlook::Outlook;
-use super::{BooleanError, LimitError, Operand, Options, SurfaceOptions, VoxelSize, sizing};
+use super::{BooleanError, LimitError, Method, Operand, Options, SurfaceOptions, VoxelSize, sizing};
 use crate::lattice::Lattice;
 use crate::ldi::{MAX_CROSSINGS, MAX_TRIANGLES};
 use crate::mesh::{Bounds, TriMesh};
@@ -19,7 +19,7 @@ pub struct Plan {
     pub voxel: f64,
     /// Voxels along x, y, z.
     pub dims: [i32; 3],
-    /// Whether what touches or crosses is cut exactly, without voxels.
+    /// Whether what touches or crosses is cut exactly: without voxels, unless there are operands with holes, which are made whole first.
     pub exact: bool,
     /// Triangles that touch others, as far as that was looked for.
     pub touching: u64,
@@ -157,10 +157,16 @@ pub fn plan<'a>(operands: impl IntoIterator<Item: Into<Operand<'a>>>, options: &
     let meshes: Vec<&TriMesh> = local.iter().map(AsRef::as_ref).collect();
     let bounds = sizing::bounds(meshes.iter().copied()).map_err(|operand| BooleanError::Empty { operand })?;
     let h = sizing::spacing(&bounds, options.voxel)?;
-    let Ahead { rest, touching, exact } = Ahead::of(&meshes, options)?;
+    let Ahead { rest, touching, way } = Ahead::of(&meshes, options)?;
     let given = Input::of(&meshes).triangles;
-    if exact {
-        return Ok(Plan::of_exact(h, given, touching));
+    match way {
+        Way::Exact => return Ok(Plan::of_exact(h, given, touching)),
+        Way::Sealed(open) => {
+            let alone = Options { method: Method::Voxel, voxel: VoxelSize::Length(h), ..*options };
+            let parts = open.iter().map(|&n| plan([meshes[n]], &alone)).collect::<Result<Vec<Plan>, _>>()?;
+            return Ok(Plan::of_sealed(parts.into_iter(), Plan::of_exact(h, given, touching)));
+        }
+        Way::Voxel => {}
     }
     let standing = given.saturating_sub(rest.triangles.len());
     let Some(bounds) = rest.bounds() else { return Ok(Plan::of_standing(h, standing)) };

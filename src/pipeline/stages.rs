@@ -9,19 +9,27 @@ use crate::progress::{Progress, Stage, Stopped};
 pub(super) struct Stages<'a> {
     progress: &'a Progress,
     times: Vec<StageTime>,
-    since: Instant,
+    /// When the last stage began, if it goes on.
+    since: Option<Instant>,
 }
 
 impl<'a> Stages<'a> {
     pub(super) fn new(progress: &'a Progress) -> Self {
-        Self { progress, times: Vec::new(), since: Instant::now() }
+        Self { progress, times: Vec::new(), since: None }
     }
 
     /// Ends the stage before and begins `stage`.
     pub(super) fn begin(&mut self, stage: Stage) -> Result<(), Stopped> {
         self.end();
         self.times.push(StageTime { stage, seconds: 0.0 });
+        self.since = Some(Instant::now());
         self.progress.stage(stage)
+    }
+
+    /// Adds stages that were timed elsewhere.
+    pub(super) fn took(&mut self, others: &[StageTime]) {
+        self.end();
+        self.times.extend(others.iter().cloned());
     }
 
     /// The seconds of all stages.
@@ -31,9 +39,8 @@ impl<'a> Stages<'a> {
     }
 
     fn end(&mut self) {
-        if let Some(last) = self.times.last_mut() {
-            last.seconds = self.since.elapsed().as_secs_f64();
+        if let (Some(since), Some(last)) = (self.since.take(), self.times.last_mut()) {
+            last.seconds = since.elapsed().as_secs_f64();
         }
-        self.since = Instant::now();
     }
 }

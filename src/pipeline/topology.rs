@@ -109,6 +109,28 @@ pub(super) fn compared(mesh: &TriMesh, sources: &[TriangleSource], apart: &Apart
     report
 }
 
+/// What there is to say of an exact result.
+pub(super) struct Found {
+    pub after: Topology,
+    /// Shells that did not stand and of which nothing is in the result.
+    pub buried: usize,
+}
+
+/// What an exact result has: with winding numbers there is nothing to compare, it is what its operands describe.
+pub(super) fn of_exact(mesh: &TriMesh, sources: &[TriangleSource], apart: &Apart) -> Found {
+    let found = shells(mesh, &Operands::new([mesh.triangles.len()]));
+    let mut seen = vec![false; apart.shells.list.len()];
+    for source in sources {
+        if let TriangleSource::Operand { operand, triangle } = *source
+            && let Some(shell) = apart.shell_of(operand, triangle)
+        {
+            seen[shell as usize] = true;
+        }
+    }
+    let gone = |n: &usize| apart.truth[*n].is_open() && !seen[*n];
+    Found { after: after(&found.list), buried: (0..seen.len()).filter(gone).count() }
+}
+
 fn after(list: &[Shell]) -> Topology {
     Topology {
         bodies: list.iter().filter(|shell| shell.volume > 0.0).count(),

@@ -1,5 +1,6 @@
 //! What a pipeline found and did, as data. The functions that fill it are beside the pipelines, in `account.rs`.
 
+mod join;
 mod nothing;
 mod operations;
 mod thin;
@@ -80,12 +81,14 @@ pub struct Report {
 impl Report {
     /// Triangles of the operands that stayed as they are, before simplification.
     pub fn kept(&self) -> usize {
-        self.standing.triangles + self.fit.as_ref().map_or(0, |fit| fit.kept)
+        let uncut = self.exact.as_ref().map_or(0, |exact| exact.triangles - exact.cut.min(exact.triangles));
+        self.standing.triangles + uncut + self.fit.as_ref().map_or(0, |fit| fit.kept)
     }
 
     /// Triangles of the operands that could have: all but those of shells that were left out as a whole.
     pub fn of(&self) -> usize {
-        self.standing.triangles + self.fit.as_ref().map_or(0, |fit| fit.of)
+        let exact = self.exact.as_ref().map_or(0, |exact| exact.triangles);
+        self.standing.triangles + exact + self.fit.as_ref().map_or(0, |fit| fit.of)
     }
 
     /// Whether the surface is the operands' own, untouched by voxels.
