@@ -40,4 +40,4 @@ mod wide;
 
 pub use error::{ArrangeError, Opening};
 pub use report::ArrangeReport;
-pub use solve::{ArrangeOptions, Arranged, arrange, crossing_curves};
+pub use solve::{ArrangeOptions, Arranged, Cut, arrange, crossing_curves, cut};
