@@ -69,9 +69,9 @@ fn evaluate(
     plan::check_standing(&meshes, options.max_memory)?;
 
     let task = Task { meshes: &meshes, classes: &classes, expression, options, h, progress };
-    let mut draft = task.draft()?;
+    let mut draft = task.draft().map_err(|error| frame.error(error))?;
     draft.report.inside = options.inside;
-    Ok(draft.counted(&meshes).global(&frame).judged(operands, progress)?)
+    Ok(draft.global(&frame).counted(&given).judged(operands, progress)?)
 }
 
 /// A boolean of operands near the origin.
