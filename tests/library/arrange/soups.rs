@@ -2,7 +2,7 @@
 
 use super::referee::{is_clear, winding};
 use super::support::{
-    Shell, arranged, asked, cases, expression, inside_out, piled, result, turned_shell, volume, whole_shell,
+    Shell, arranged_by, asked, cases, expression, inside_out, piled, result, turned_shell, volume, whole_shell,
 };
 use crate::common::exact::spread;
 use glam::DVec3;
@@ -34,7 +34,7 @@ fn check(soup: &[Vec<(Shell, bool)>], tree: &Expression, inside: Inside, single:
     let operands = meshes(soup);
     let (all, _) = piled(&operands);
     prop_assume!(!all.triangles.is_empty());
-    let made = arranged(&operands, &ArrangeOptions { inside, single, ..asked(tree) });
+    let made = arranged_by(inside, &operands, &ArrangeOptions { single, ..asked(tree) });
     let made = made.map_err(|error| TestCaseError::fail(format!("{error}")))?;
     if !made.mesh.triangles.is_empty() {
         let found = crate::common::proofs::state(&made.mesh, true);

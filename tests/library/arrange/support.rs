@@ -13,7 +13,7 @@ use proptest::test_runner::TestCaseError;
 
 /// What is asked of an arrangement: the triangles as they face, in double precision.
 pub fn asked(expression: &Expression) -> ArrangeOptions<'_> {
-    ArrangeOptions { expression, inside: Inside::Positive, orient: OrientMode::Keep, single: false, classes: &[] }
+    ArrangeOptions { expression, orient: OrientMode::Keep, single: false, suspects: &[], classes: &[] }
 }
 
 /// All triangles of operands, one operand after another.
@@ -24,8 +24,17 @@ pub fn piled(operands: &[TriMesh]) -> (TriMesh, Operands) {
 }
 
 pub fn arranged(operands: &[TriMesh], options: &ArrangeOptions<'_>) -> Result<Arranged, ArrangeError> {
+    arranged_by(Inside::Positive, operands, options)
+}
+
+/// The arrangement of operands of which these winding numbers are inside.
+pub fn arranged_by(
+    inside: Inside,
+    operands: &[TriMesh],
+    options: &ArrangeOptions<'_>,
+) -> Result<Arranged, ArrangeError> {
     let (mesh, counts) = piled(operands);
-    arrange(&mesh, &counts, options, &Progress::none())
+    arrange(&mesh, &counts.with_inside(inside), options, &Progress::none())
 }
 
 /// The arrangement of operands in double precision, or in single.
