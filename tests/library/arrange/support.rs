@@ -4,7 +4,7 @@ use crate::common::proofs::state;
 use crate::common::shapes::{cuboid, torus_of};
 use glam::{DQuat, DVec3};
 use meshwright::arrange::{ArrangeError, ArrangeOptions, Arranged, arrange};
-use meshwright::ldi::{Expression, Inside, Operands};
+use meshwright::ldi::{Expression, Operands};
 use meshwright::mesh::TriMesh;
 use meshwright::orient::OrientMode;
 use meshwright::progress::Progress;
@@ -13,7 +13,7 @@ use proptest::test_runner::TestCaseError;
 
 /// What is asked of an arrangement: the triangles as they face, in double precision.
 pub fn asked(expression: &Expression) -> ArrangeOptions<'_> {
-    ArrangeOptions { expression, inside: Inside::Positive, orient: OrientMode::Keep, single: false, classes: &[] }
+    ArrangeOptions { expression, orient: OrientMode::Keep, single: false, suspects: &[], classes: &[] }
 }
 
 /// All triangles of operands, one operand after another.
