@@ -58,9 +58,10 @@ pub(crate) fn merge(
         .collect();
     borders.par_sort_unstable();
     let sheets: Vec<&[Border]> = borders.chunk_by(|a, b| a.0.0 == b.0.0).collect();
+    let contacts = contacts(&faces, &region, &creases, &is_whole);
     let merged: Vec<Vec<Face>> = sheets
         .par_iter()
-        .map(|borders| progress.check().map(|()| triangulated(refined, borders)))
+        .map(|borders| progress.check().map(|()| triangulated(refined, borders, &contacts)))
         .collect::<Result<_, _>>()?;
     // In the order of the facets.
     let of_sheet: FxHashMap<u32, usize> = sheets.iter().enumerate().map(|(n, borders)| (borders[0].0.0, n)).collect();
@@ -72,6 +73,34 @@ pub(crate) fn merge(
         }
     }
     Ok(result)
+}
+
+/// The points within regions at which others touch them, each with its facet, ascending.
+fn contacts(
+    faces: &[Face],
+    region: &[Region],
+    creases: &Creases,
+    is_whole: &impl Fn(&Face) -> bool,
+) -> Vec<(u32, u32)> {
+    // Points by the regions that have them; whether the region may be cut anew, and whether its border passes the point.
+    let mut uses: Vec<(u32, Region, bool, bool)> = Vec::new();
+    for (face, &region) in faces.iter().zip(region) {
+        let [a, b, c] = face.corners;
+        let is_border = |a: u32, b: u32| creases.edges.contains(&[a.min(b), a.max(b)]);
+        let borders = [[a, b], [b, c], [c, a]].map(|[a, b]| is_border(a, b));
+        let whole = is_whole(face);
+        uses.extend((0..3).map(|k| (face.corners[k], region, !whole, borders[k] || borders[(k + 2) % 3])));
+    }
+    uses.par_sort_unstable();
+    let mut found = Vec::new();
+    for same in uses.chunk_by(|a, b| a.0 == b.0).filter(|same| same[0].1 != same[same.len() - 1].1) {
+        let regions = same.chunk_by(|a, b| a.1 == b.1);
+        let within = regions.filter(|uses| uses.iter().all(|&(_, _, anew, border)| anew && !border));
+        found.extend(within.map(|uses| (uses[0].1.0, uses[0].0)));
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 /// The edges between regions, and the points in the middle of straight ones.
@@ -116,12 +145,14 @@ fn creases(refined: &Refined, corners: &[[u32; 3]], region: &[Region]) -> Crease
     found
 }
 
-/// The regions of one sheet between their borders.
-fn triangulated(refined: &Refined, borders: &[Border]) -> Vec<Face> {
+/// The regions of one sheet between their borders, and with the points at which others touch them.
+fn triangulated(refined: &Refined, borders: &[Border], contacts: &[(u32, u32)]) -> Vec<Face> {
     let facet = borders[0].0.0;
     let plane: Plane = refined.facets.plane(facet);
     let axis = plane.axis();
     let mut numbers: Vec<u32> = borders.iter().flat_map(|border| border.1).collect();
+    let touched = contacts.partition_point(|contact| contact.0 < facet);
+    numbers.extend(contacts[touched..].iter().take_while(|contact| contact.0 == facet).map(|contact| contact.1));
     let single = refined.is_single(facet);
     let corners = refined.facets.corners[facet as usize];
     numbers.extend(corners.iter().filter(|_| single));

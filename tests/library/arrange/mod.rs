@@ -6,5 +6,5 @@ mod chain;
 mod order;
 mod referee;
 mod soups;
-pub mod support;
+mod support;
 mod touching;

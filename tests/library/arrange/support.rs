@@ -4,7 +4,7 @@ use crate::common::proofs::state;
 use crate::common::shapes::{cuboid, torus_of};
 use glam::{DQuat, DVec3};
 use meshwright::arrange::{ArrangeError, ArrangeOptions, Arranged, arrange};
-use meshwright::ldi::{Expression, Inside, Operands};
+use meshwright::ldi::{Expression, Operands};
 use meshwright::mesh::TriMesh;
 use meshwright::orient::OrientMode;
 use meshwright::progress::Progress;
@@ -24,17 +24,8 @@ pub fn piled(operands: &[TriMesh]) -> (TriMesh, Operands) {
 }
 
 pub fn arranged(operands: &[TriMesh], options: &ArrangeOptions<'_>) -> Result<Arranged, ArrangeError> {
-    arranged_by(Inside::Positive, operands, options)
-}
-
-/// The arrangement of operands of which these winding numbers are inside.
-pub fn arranged_by(
-    inside: Inside,
-    operands: &[TriMesh],
-    options: &ArrangeOptions<'_>,
-) -> Result<Arranged, ArrangeError> {
     let (mesh, counts) = piled(operands);
-    arrange(&mesh, &counts.with_inside(inside), options, &Progress::none())
+    arrange(&mesh, &counts, options, &Progress::none())
 }
 
 /// The arrangement of operands in double precision, or in single.
