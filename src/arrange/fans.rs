@@ -105,12 +105,12 @@ impl Draft {
         }
     }
 
-    /// A place some steps away from a point in a direction; `size` of the steps is that of the largest coordinate.
+    /// A place some steps away from a point in a direction.
     fn beside(&self, p: DVec3, inward: DVec3, fine: &Fine, factor: f64) -> [i32; 3] {
-        let step = fine.step_at(p.abs().max_element());
-        // No component is lost in rounding.
-        let longest = inward.abs().max_element().max(1e-9);
-        fine.settled(p + inward / longest * (STEPS * factor * step))
+        let step = DVec3::from_array(p.abs().to_array().map(|size| fine.step_at(size)));
+        // So far that rounding does not lose it.
+        let share = (inward.abs() / step).max_element().max(1e-9);
+        fine.settled(p + inward / share * (STEPS * factor))
     }
 
     /// Gives each fan of triangles around a vertex a vertex of its own.

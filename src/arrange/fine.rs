@@ -2,7 +2,14 @@
 
 use glam::DVec3;
 
-use super::point::BITS;
+use crate::mesh::TriMesh;
+
+/// Bits of a coordinate on the fine lattice.
+pub(crate) const BITS: u32 = 30;
+
+/// How far the approximate coordinates of a point may be off, steps of the fine lattice. The quotient of two numbers that are exact to
+/// 2⁻⁵² each is off by less than 2⁻⁵⁰ of itself, and no coordinate exceeds 2³⁰.
+pub(crate) const ERROR: f64 = 1.0 / (1 << 20) as f64;
 
 /// A lattice around the origin of model space.
 ///
@@ -14,14 +21,24 @@ pub(crate) struct Fine {
     pub(crate) step: f64,
     /// Whether coordinates are to be `f32` numbers, too.
     pub(crate) single: bool,
+    /// For each axis the distance of the numbers that a coordinate of the result may have next to the largest one, steps.
+    pub(crate) coarsest: DVec3,
 }
 
 impl Fine {
-    /// The lattice for coordinates of at most this size, model units.
-    pub(crate) fn of(largest: f64, single: bool) -> Self {
+    /// The lattice for points whose coordinates have at most these sizes, model units.
+    pub(crate) fn of(largest: DVec3, single: bool) -> Self {
         // Far from the ends of floating point, so that steps and their inverses are normal numbers.
-        let exponent = largest.max(1e-250).log2().floor() as i32 + 1 - BITS as i32;
-        Self { step: 2f64.powi(exponent), single }
+        let exponent = largest.max_element().max(1e-250).log2().floor() as i32 + 1 - BITS as i32;
+        let step = 2f64.powi(exponent);
+        let mut fine = Self { step, single, coarsest: DVec3::ONE };
+        fine.coarsest = DVec3::from_array((largest / step).to_array().map(|size| fine.step_at(size)));
+        fine
+    }
+
+    /// The lattice for the vertices of a mesh.
+    pub(crate) fn around(mesh: &TriMesh, single: bool) -> Self {
+        Self::of(mesh.positions.iter().fold(DVec3::ZERO, |most, p| most.max(p.abs())), single)
     }
 
     /// The place nearest to a point.
@@ -46,10 +63,5 @@ impl Fine {
     pub(crate) fn step_at(&self, size: f64) -> f64 {
         let exponent = size.max(1.0).log2().floor() as i32 - 23;
         if self.single { 2f64.powi(exponent.max(0)) } else { 1.0 }
-    }
-
-    /// The distance of the numbers that a coordinate of the result may have next to the largest one, steps.
-    pub(crate) fn coarsest(&self) -> i32 {
-        if self.single { 1 << (BITS - 24) } else { 1 }
     }
 }

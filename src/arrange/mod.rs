@@ -27,6 +27,7 @@ mod meet;
 mod merge;
 mod near;
 mod needles;
+mod options;
 mod planar;
 mod plane;
 mod point;
@@ -35,9 +36,12 @@ mod report;
 mod round;
 mod sheets;
 mod solve;
+#[cfg(test)]
+mod tests;
 mod turn;
 mod wide;
 
 pub use error::{ArrangeError, Opening};
+pub use options::ArrangeOptions;
 pub use report::ArrangeReport;
-pub use solve::{ArrangeOptions, Arranged, arrange, crossing_curves};
+pub use solve::{Arranged, Cut, arrange, crossing_curves, cut};

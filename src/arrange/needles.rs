@@ -4,22 +4,23 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::draft::{Draft, Kind};
+use super::fine::Fine;
 
 impl Draft {
-    /// Collapses edges shorter than `reach` steps of these triangles, and turns over the longest edge of those that are flatter than that. Vertices of the
-    /// input stay where they are.
-    pub(crate) fn mend_needles(&mut self, list: &[u32], reach: f64) {
+    /// Collapses edges of these triangles that are shorter than `reach`, and turns over the longest edge of those that are flatter than that; in the
+    /// coarsest numbers along each axis. Vertices of the input stay where they are.
+    pub(crate) fn mend_needles(&mut self, list: &[u32], fine: &Fine, reach: f64) {
         let mut used = vec![false; self.places.len()];
         let mut caps: Vec<(u32, usize)> = Vec::new();
         for &t in list {
             let corners = self.triangles[t as usize];
-            let points = corners.map(|v| DVec3::from_array(self.places[v as usize].map(f64::from)));
+            let points = corners.map(|v| DVec3::from_array(self.places[v as usize].map(f64::from)) / fine.coarsest);
             let lengths = [0, 1, 2].map(|k| points[k].distance(points[(k + 1) % 3]));
             let by_length = |&a: &usize, &b: &usize| lengths[a].total_cmp(&lengths[b]);
             let shortest = (0..3).min_by(by_length).unwrap_or(0);
             let longest = (0..3).max_by(by_length).unwrap_or(0);
             let [a, b] = [corners[shortest], corners[(shortest + 1) % 3]];
-            let height = (points[1] - points[0]).cross(points[2] - points[0]).length() / lengths[longest].max(1.0);
+            let height = (points[1] - points[0]).cross(points[2] - points[0]).length() / lengths[longest].max(1e-3);
             if lengths[shortest] <= reach {
                 if !used[a as usize] && !used[b as usize] {
                     self.join(a, b);

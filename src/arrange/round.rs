@@ -6,7 +6,6 @@
 
 use glam::DVec3;
 
-use super::ArrangeOptions;
 use super::cells::{Cells, Owner, gaps};
 use super::draft::{Draft, Kind, Rounding};
 use super::extract::{Face, extract};
@@ -14,6 +13,7 @@ use super::facets::Facets;
 use super::fine::Fine;
 use super::merge::merge;
 use super::near::Near;
+use super::options::ArrangeOptions;
 use super::refine::{Refined, refine};
 use super::solve;
 use crate::mesh::{TriMesh, flat_triangles, intersections_with, self_intersections};
@@ -28,7 +28,7 @@ const GROWTH: usize = 2;
 /// Neither does one with more than this many times the fewest triangles that crossed before, and some to spare.
 const WORSE: usize = 4;
 
-/// One way of going on where triangles cross once rounded. Lengths are in the coarsest numbers that coordinates may have.
+/// One way of going on where triangles cross once rounded. Lengths are in the coarsest numbers that coordinates along each axis may have.
 ///
 /// Measured on the closed files of the real data in single and double precision: no way ends well on all of them, and one of the first two ends
 /// well on each. Grids that grow from round to round, and cutting needles instead of collapsing them, end well on half of the hard ones.
@@ -37,19 +37,21 @@ struct Way {
     /// Rounds before anything is moved onto the grid.
     patience: u32,
     /// The grid.
-    grid: i32,
+    grid: f64,
     /// How far away a vertex is found by a point that is made.
     reach: f64,
     /// How short an edge is collapsed in the first round; doubled in each further one.
     needle: f64,
 }
 
-const WAYS: [Way; 5] = [
-    Way { patience: 2, grid: 8, reach: 2.0, needle: 16.0 },
-    Way { patience: 0, grid: 8, reach: 2.0, needle: 16.0 },
-    Way { patience: 1, grid: 32, reach: 8.0, needle: 16.0 },
-    Way { patience: 4, grid: 8, reach: 8.0, needle: 4.0 },
-    Way { patience: 2, grid: 64, reach: 16.0, needle: 64.0 },
+const WAYS: [Way; 7] = [
+    Way { patience: 2, grid: 8.0, reach: 2.0, needle: 16.0 },
+    Way { patience: 0, grid: 8.0, reach: 2.0, needle: 16.0 },
+    Way { patience: 1, grid: 32.0, reach: 8.0, needle: 16.0 },
+    Way { patience: 4, grid: 8.0, reach: 8.0, needle: 4.0 },
+    Way { patience: 2, grid: 64.0, reach: 16.0, needle: 64.0 },
+    Way { patience: 4, grid: 64.0, reach: 16.0, needle: 64.0 },
+    Way { patience: 1, grid: 64.0, reach: 1.0, needle: 4.0 },
 ];
 
 /// A surface that is done.
@@ -117,7 +119,6 @@ pub(crate) fn round(surface: &Surface<'_>, progress: &Progress) -> Result<Option
 impl Way {
     /// Rounds a surface and unites it with itself until nothing crosses.
     fn go(&self, surface: &Surface<'_>, progress: &Progress) -> Result<Option<Rounded>, Stopped> {
-        let coarsest = f64::from(surface.fine.coarsest());
         let rounding = Rounding { fine: surface.fine, kinds: surface.kinds, near: None, exact: true };
         let mut draft = Draft::new(surface.refined, surface.faces, &rounding, |t| t);
         let most = GROWTH * draft.triangles.len() + 1000;
@@ -142,10 +143,10 @@ impl Way {
             if draft.triangles.len() > most || offenders.len() > WORSE * fewest + 100 {
                 break;
             }
-            let grid = if number < self.patience { 0 } else { self.grid * surface.fine.coarsest() };
+            let grid = if number < self.patience { 0.0 } else { self.grid };
             draft.move_offenders(&offenders, surface.fine, grid, number);
-            draft.mend_needles(&offenders, self.needle * coarsest * f64::from(1 << number));
-            match united(&draft, self.reach * coarsest, surface, progress)? {
+            draft.mend_needles(&offenders, surface.fine, self.needle * f64::from(1 << number));
+            match united(&draft, self.reach, surface, progress)? {
                 Some(next) => draft = next,
                 None => break,
             }
@@ -181,7 +182,7 @@ const LAST_RESORT: u32 = 6;
 impl Draft {
     /// Puts the corners of triangles that cross on the lattice, and on a grid, if that is not zero; corners of the input only in the last
     /// rounds.
-    fn move_offenders(&mut self, offenders: &[u32], fine: &Fine, grid: i32, number: u32) {
+    fn move_offenders(&mut self, offenders: &[u32], fine: &Fine, grid: f64, number: u32) {
         let mut corners: Vec<u32> = offenders.iter().flat_map(|&t| self.triangles[t as usize]).collect();
         corners.sort_unstable();
         corners.dedup();
@@ -192,9 +193,10 @@ impl Draft {
                 continue;
             }
             self.kinds[v] = Kind::Moved;
-            if grid > 0 {
-                let nearest = |x: i32| f64::from((x + grid / 2).div_euclid(grid)) * f64::from(grid);
-                self.places[v] = fine.settled(DVec3::from_array(self.places[v].map(nearest)));
+            if grid > 0.0 {
+                let grid = grid * fine.coarsest;
+                let place = DVec3::from_array(self.places[v].map(f64::from));
+                self.places[v] = fine.settled((place / grid).round() * grid);
             }
         }
     }
@@ -213,7 +215,7 @@ fn united(draft: &Draft, reach: f64, surface: &Surface<'_>, progress: &Progress)
     let mut touched: Vec<u32> = pairs.iter().flatten().copied().collect();
     touched.sort_unstable();
     touched.dedup();
-    let near = Near::new(&facets, &touched, reach);
+    let near = Near::new(&facets, &touched, surface.fine, reach);
     let refined = refine(facets, &pairs, progress)?;
     if !gaps(&refined, &One).is_empty() {
         return Ok(None);

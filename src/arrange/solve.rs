@@ -11,27 +11,11 @@ use super::merge::merge;
 use super::refine::{Refined, refine};
 use super::round::{Rounded, Surface, round, touching};
 use super::turn::Turned;
-use super::{ArrangeError, ArrangeReport, Opening};
+use super::{ArrangeError, ArrangeOptions, ArrangeReport, Opening};
 use crate::ldi::{Expression, Operands};
 use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
 use crate::progress::Progress;
-
-/// Options of [`arrange`].
-#[derive(Debug, Clone, Copy)]
-pub struct ArrangeOptions<'a> {
-    /// The result in terms of the operands.
-    pub expression: &'a Expression,
-    /// Whether shells that face the wrong way are turned over.
-    pub orient: OrientMode,
-    /// Whether all coordinates of the result are to be `f32` numbers.
-    pub single: bool,
-    /// For each triangle whether it may touch another one, if that has been found out for the coordinates of the result (see
-    /// [`contacts`](crate::shells::contacts)); empty: any may.
-    pub suspects: &'a [bool],
-    /// A number for each triangle, or none at all: triangles with different numbers are not merged where they lie in one plane.
-    pub classes: &'a [u32],
-}
 
 /// An exact result, with rounded vertices.
 #[derive(Debug, Clone, Default)]
@@ -60,11 +44,27 @@ pub fn arrange(
     options: &ArrangeOptions<'_>,
     progress: &Progress,
 ) -> Result<Arranged, ArrangeError> {
+    match attempted(mesh, operands, options, progress) {
+        // On the lattice more triangles may touch than where they were looked at: then only one of two neighbours is cut at their edge.
+        Err(ArrangeError::Open { .. }) if !options.suspects.is_empty() => {
+            attempted(mesh, operands, &ArrangeOptions { suspects: &[], ..*options }, progress)
+        }
+        result => result,
+    }
+}
+
+/// [`arrange`], with only the suspects looked at.
+fn attempted(
+    mesh: &TriMesh,
+    operands: &Operands,
+    options: &ArrangeOptions<'_>,
+    progress: &Progress,
+) -> Result<Arranged, ArrangeError> {
     let input: Vec<DVec3> = match options.single {
         true => mesh.positions.iter().map(|p| p.as_vec3().as_dvec3()).collect(),
         false => mesh.positions.clone(),
     };
-    let fine = Fine::of(mesh.positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max), options.single);
+    let fine = Fine::around(mesh, options.single);
     let (refined, kinds, pairs) = refined(mesh, &fine, options.suspects, progress)?;
     let owner = Turned::none(operands, mesh.triangles.len());
     let open = gaps(&refined, &owner);
@@ -144,12 +144,47 @@ fn inside(winding: &[i32], operands: &Operands, expression: &Expression) -> Vec<
     winding.chunks(operands.count()).map(cell).collect()
 }
 
+/// A surface cut where its triangles cross each other, whether or not it closes.
+#[derive(Debug, Clone, Default)]
+pub struct Cut {
+    /// The pieces. Where several triangles lie over one another, there is a piece for each.
+    pub mesh: TriMesh,
+    /// For each piece the triangle of the input that it is one of.
+    pub sources: Vec<u32>,
+    /// How many triangles were cut.
+    pub cut: usize,
+}
+
+/// Cuts the triangles of a mesh where they cross each other. The pieces meet only at common edges and vertices, but for what rounding does to
+/// the points that are made.
+///
+/// # Errors
+/// [`ArrangeError::Crowded`] where there are too many, and a stop.
+pub fn cut(mesh: &TriMesh, single: bool, progress: &Progress) -> Result<Cut, ArrangeError> {
+    let fine = Fine::around(mesh, single);
+    let (refined, kinds, _) = refined(mesh, &fine, &[], progress)?;
+    let position = |p: usize| match kinds.get(p) {
+        Some(&Kind::Own(v)) => mesh.positions[v as usize],
+        _ => fine.point(fine.settled(refined.points.approximate(p as u32))),
+    };
+    let mut pieces = Cut { cut: refined.cut(), ..Cut::default() };
+    pieces.mesh.positions = (0..refined.points.len()).map(position).collect();
+    for piece in &refined.pieces {
+        for cover in refined.covers(piece) {
+            let [a, b, c] = piece.corners;
+            pieces.mesh.triangles.push(if cover.reversed { [a, c, b] } else { [a, b, c] });
+            pieces.sources.push(cover.triangle);
+        }
+    }
+    Ok(pieces)
+}
+
 /// The segments along which triangles of a mesh cross each other, model units: where a boolean would cut.
 ///
 /// # Errors
 /// [`ArrangeError::Crowded`] where there are too many, and a stop.
 pub fn crossing_curves(mesh: &TriMesh, progress: &Progress) -> Result<Vec<[DVec3; 2]>, ArrangeError> {
-    let fine = Fine::of(mesh.positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max), false);
+    let fine = Fine::around(mesh, false);
     let (refined, _, _) = refined(mesh, &fine, &[], progress)?;
     let point = |p: u32| refined.points.approximate(p) * fine.step;
     Ok(refined.curves.iter().map(|curve| curve.map(point)).collect())

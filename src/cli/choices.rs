@@ -5,8 +5,29 @@ use clap::ValueEnum;
 pub use crate::io::FileFormat as AnyFormat;
 use crate::ldi::Inside;
 use crate::orient::OrientMode;
-use crate::pipeline::{DistanceMethod, DistanceSign, SheetSide};
+use crate::pipeline::{DistanceMethod, DistanceSign, Method, SheetSide};
 use crate::vote::VoteRule;
+
+/// `--method` of the verbs that make a solid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum SolidMethod {
+    /// Exactly where the inputs are closed once they are cut where they cross; else from voxels
+    Auto,
+    /// Exactly, or not at all: inputs with holes are refused
+    Exact,
+    /// From voxels, apart from what is closed and touches nothing
+    Voxel,
+}
+
+impl From<SolidMethod> for Method {
+    fn from(choice: SolidMethod) -> Self {
+        match choice {
+            SolidMethod::Auto => Self::Auto,
+            SolidMethod::Exact => Self::Exact,
+            SolidMethod::Voxel => Self::Voxel,
+        }
+    }
+}
 
 /// `--orient`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -63,11 +63,12 @@ fn kept(pipeline: &Report) -> Vec<String> {
         parts.push(format!("{shells} left out: inside of others, or outside of the result"));
     }
     let counts = &pipeline.triangles;
-    parts.push(match (counts.rebuilt, counts.made_up) {
-        (0, 0) => "every triangle was kept as it is".into(),
+    parts.push(match (counts.cut, counts.rebuilt, counts.made_up) {
+        (0, 0, 0) => "every triangle was kept as it is".into(),
         _ => {
-            let of = |kind: TriangleKind| format!("{} {}", words::count(counts.count(kind)), kind.word());
-            format!("of its triangles {} (--map shows which)", TriangleKind::ALL.map(of).join(", "))
+            let some = TriangleKind::BY_CHANGE.into_iter().filter(|&kind| counts.count(kind) > 0);
+            let of = some.map(|kind| format!("{} {}", words::count(counts.count(kind)), kind.word()));
+            format!("of its triangles {} (--map shows which)", of.collect::<Vec<_>>().join(", "))
         }
     });
     parts

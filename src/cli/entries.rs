@@ -114,3 +114,12 @@ pub struct DeviceReport {
     /// Why, in a sentence.
     pub why: String,
 }
+
+/// Where triangles of a mesh cross each other.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, schemars::JsonSchema)]
+pub struct CrossingEntry {
+    /// Straight pieces of the lines along which they do.
+    pub segments: usize,
+    /// The length of all of them, model units.
+    pub length: f64,
+}

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::length::QuantityError;
 use super::words;
+use crate::arrange::ArrangeError;
 use crate::mesh::{SolidError, Validity};
 use crate::pipeline::{Advice, LimitError, Trouble};
 use crate::progress::Stopped;
@@ -133,7 +134,7 @@ impl Failure {
             }
             Trouble::Options => Self::usage(error.to_string()),
             Trouble::Voxel => Self::new(if asked.voxel { Exit::Usage } else { Exit::Input }, error.to_string()),
-            Trouble::NotExact => Self::new(Exit::Limit, error.to_string()),
+            Trouble::NotExact(why) => Self::new(Exit::Limit, not_exact(why, labels)),
             Trouble::Input => Self::input(error.to_string()),
             Trouble::NoRoom => Self::new(Exit::Memory, error.to_string()),
             Trouble::Device | Trouble::Call | Trouble::Index => Self::internal(error.to_string()),
@@ -162,6 +163,24 @@ impl Failure {
         let problems = validity.problems().join("; ");
         Self::new(Exit::Limit, format!("the result is not a valid solid ({problems}); it was not written"))
             .hint("another --resolution or --voxel; and please report it: this should not happen")
+    }
+}
+
+/// Why there is no exact result, for operands that go by `labels`.
+fn not_exact(why: &ArrangeError, labels: &[String]) -> String {
+    let ArrangeError::Open { edges, first, closed } = why else { return format!("there is no exact result: {why}") };
+    let label = |operand: usize| labels.get(operand).map_or("the input", String::as_str).to_string();
+    let open: Vec<String> = (0..closed.len()).filter(|&n| !closed[n]).map(label).collect();
+    let place = |p: [f64; 3]| p.map(words::number).join(" ");
+    let [from, to] = first.ends.map(place);
+    let (edges, of) = (words::plural(*edges, "edge"), label(first.operand));
+    match open.as_slice() {
+        [] => "there is no exact result: what the surfaces enclose contradicts itself".into(),
+        [one] => format!("there is no exact result: {one} does not close around {edges}, one from {from} to {to}"),
+        several => format!(
+            "there is no exact result: {} do not close around {edges}, one of {of} from {from} to {to}",
+            words::list(several)
+        ),
     }
 }
 

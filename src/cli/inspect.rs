@@ -3,6 +3,7 @@
 use serde_json::json;
 
 use super::choices::Defect;
+use super::entries::CrossingEntry;
 use super::exit::{Asked, Exit, Failure};
 use super::given::Given;
 use super::input::{self, Input};
@@ -11,8 +12,9 @@ use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
 use super::{grids, summary, table, words};
+use crate::arrange::{ArrangeError, crossing_curves};
 use crate::io::Unit;
-use crate::mesh::{Bounds, MassProperties, Overhang, ValidateOptions, Validity, validate};
+use crate::mesh::{Bounds, MassProperties, Overhang, TriMesh, ValidateOptions, Validity, validate};
 use crate::pipeline::{self, LengthsReport, Options, ThicknessReport};
 use crate::progress::Stage;
 
@@ -31,6 +33,7 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
     report.warnings.extend(summary::size_doubts(&input.loaded, unit));
     report.options = json!({ "unit": unit.map(|unit| unit.to_string()) });
     report.inputs = vec![super::entries::InputEntry { validity: Some(validity.clone()), ..input.entry.clone() }];
+    let crossings = crossings(&input.loaded.mesh, &validity, session, report)?;
     let solid = validity.is_oriented_manifold();
     let mass = solid.then(|| MassProperties::of(&input.loaded.mesh)).flatten();
     let overhang = solid.then(|| Overhang::of(&input.loaded.mesh, args.overhang));
@@ -42,17 +45,49 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
     if !args.common.json {
         let mut rows = summary::inspection(input, &validity, unit);
         let name = unit.map(|unit| unit.to_string());
+        rows.extend(
+            crossings.iter().filter(|found| found.segments > 0).map(|found| crossing_row(found, name.as_deref())),
+        );
         rows.extend(mass.iter().flat_map(|mass| mass_rows(mass, name.as_deref())));
         rows.extend(overhang.iter().map(|found| overhang_row(found, &validity, name.as_deref())));
         rows.extend(thickness.iter().flat_map(|thickness| thickness_rows(thickness, name.as_deref())));
         super::streams::write_stream(table::table(&rows).as_bytes())?;
     }
-    report.result = Some(RunResult::Inspection { mass, overhang, thickness });
+    report.result = Some(RunResult::Inspection { mass, overhang, crossings, thickness });
     let found: Vec<String> = failing(&args.fail_on, &validity);
     if found.is_empty() {
         return Ok(Exit::Done);
     }
     Err(Failure::new(Exit::Limit, format!("{} has {}, as --fail-on asks", input.label, words::list(&found))))
+}
+
+/// Where triangles cross; `None` where none do, and where there are too many places.
+fn crossings(
+    mesh: &TriMesh,
+    validity: &Validity,
+    session: &Session,
+    report: &mut RunReport,
+) -> Result<Option<CrossingEntry>, Failure> {
+    if validity.self_intersecting_triangles.is_none_or(|count| count == 0) {
+        return Ok(None);
+    }
+    session.progress.stage(Stage::Arrange)?;
+    match report.timed(Stage::Arrange, |_| crossing_curves(mesh, &session.progress)) {
+        Ok(curves) => {
+            let length = curves.iter().map(|[a, b]| a.distance(*b)).sum();
+            Ok(Some(CrossingEntry { segments: curves.len(), length }))
+        }
+        Err(ArrangeError::Stopped(stopped)) => Err(stopped.into()),
+        Err(error) => {
+            report.warnings.push(format!("where triangles cross is not told: {error}"));
+            Ok(None)
+        }
+    }
+}
+
+fn crossing_row(found: &CrossingEntry, unit: words::UnitName<'_>) -> table::Row {
+    let (segments, length) = (words::plural(found.segments, "segment"), words::length(found.length, unit));
+    ("crossings", format!("triangles cross along {segments}, {length} long in all (`meshwright render` draws them)"))
 }
 
 fn mass_rows(mass: &MassProperties, unit: words::UnitName<'_>) -> Vec<table::Row> {

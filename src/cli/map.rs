@@ -8,8 +8,8 @@ use super::{output, side};
 use crate::io::{self, FaceMap, LegendEntry};
 use crate::pipeline::{Operand, Outcome, TriangleKind};
 
-/// The colours of the kinds, in their order: blue-grey, orange, magenta. Eyes that lack a kind of cones tell them apart, too (see the tests).
-const KINDS: [[u8; 3]; 3] = [[176, 190, 205], [230, 150, 20], [165, 15, 105]];
+/// The colours of the kinds, by their numbers: blue-grey, orange, magenta, blue. Eyes that lack a kind of cones tell them apart, too (see the tests).
+const KINDS: [[u8; 3]; 4] = [[176, 190, 205], [230, 150, 20], [165, 15, 105], [45, 15, 180]];
 
 /// Walls of canals, by their numbers; none looks like a kind.
 const CANALS: [[u8; 3]; 6] =
@@ -19,6 +19,7 @@ const CANALS: [[u8; 3]; 6] =
 fn meaning(kind: TriangleKind) -> String {
     let what = match kind {
         TriangleKind::Kept => "as it was in the input",
+        TriangleKind::Cut => "pieces of the input's triangles",
         TriangleKind::Rebuilt => "surface of the input, made anew",
         TriangleKind::MadeUp => "no surface of the input there",
     };
@@ -58,7 +59,7 @@ pub fn write(
 
 /// What the colours mean; there are as many canals.
 fn legend(canals: u32) -> Vec<LegendEntry> {
-    let of_kinds = TriangleKind::ALL.iter().map(|&kind| (KINDS[kind as usize], meaning(kind)));
+    let of_kinds = TriangleKind::BY_CHANGE.iter().map(|&kind| (KINDS[kind as usize], meaning(kind)));
     let of_canals = (0..CANALS.len() as u32).take(canals as usize).map(|n| {
         let same: Vec<String> = (n..canals).step_by(CANALS.len()).take(4).map(|c| (c + 1).to_string()).collect();
         (CANALS[n as usize], format!("{} {}", if same.len() > 1 { "canals" } else { "canal" }, same.join(", ")))
@@ -96,7 +97,7 @@ mod tests {
     fn every_eye_tells_the_kinds_apart() {
         let far = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
         for eye in &WITHOUT {
-            for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            for (i, j) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
                 let apart = far(seen(KINDS[i], eye), seen(KINDS[j], eye));
                 assert!(apart > 25.0, "{i} and {j} are {apart} apart for {eye:?}");
             }
@@ -112,7 +113,7 @@ mod tests {
 
     #[test]
     fn canals_of_one_colour_share_an_entry() {
-        let texts = |canals| legend(canals).into_iter().map(|entry| entry.text).skip(3).collect::<Vec<_>>();
+        let texts = |canals| legend(canals).into_iter().map(|entry| entry.text).skip(4).collect::<Vec<_>>();
         assert_eq!(texts(0), Vec::<String>::new());
         assert_eq!(texts(2), ["canal 1", "canal 2"]);
         assert_eq!(texts(7)[..2], ["canals 1, 7", "canal 2"]);

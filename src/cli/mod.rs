@@ -19,6 +19,7 @@ mod dropped;
 mod ending;
 mod entries;
 mod epilogue;
+mod exact;
 mod exit;
 mod field;
 mod field_args;

@@ -107,7 +107,7 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
     session.say(&format!("{label}: {} x {} pixels", image.width, image.height));
     if options.defects && drawn.len() < inputs.0.order.len() {
         session.say(
-            "open edges red, edges of more than two triangles magenta, intersecting triangles yellow, inner sides rust red",
+            "open edges red, edges of more than two triangles magenta, intersecting triangles yellow and where they cross blue, inner sides rust red",
         );
     }
     for input in inputs.0.meshes.iter().filter(|input| !input.loaded.legend.is_empty()) {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::entries::{DeviceReport, GridEntry, OutputEntry, SliceEntry};
+use super::entries::{CrossingEntry, DeviceReport, GridEntry, OutputEntry, SliceEntry};
 use crate::compare::Comparison;
 use crate::decimate::DecimateReport;
 use crate::fit::FitReport;
@@ -52,6 +52,9 @@ pub enum RunResult {
         /// What hangs over, of a closed, oriented mesh.
         #[serde(skip_serializing_if = "Option::is_none")]
         overhang: Option<Overhang>,
+        /// Where triangles cross, of a mesh of which some do.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        crossings: Option<CrossingEntry>,
         /// What `--thickness` measured.
         #[serde(skip_serializing_if = "Option::is_none")]
         thickness: Option<ThicknessReport>,

@@ -43,6 +43,7 @@ pub struct Job<'a> {
 /// Runs the pipeline from file to file.
 pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let args = job.args;
+    args.check()?;
     if args.output.is_none() && !args.plan && job.change.is_none_or(Change::makes_a_mesh) {
         return Err(Failure::usage("where to write the result is not said: --output OUT")
             .hint("--plan says what it would cost, without an output"));
@@ -80,6 +81,7 @@ fn options(
     let scale = Scale { unit, diagonal, voxel: Some(voxel.spacing(longest)) };
     let options = Options {
         fit: fit(args, &scale, inputs)?,
+        method: args.method.into(),
         orient: args.orient.into(),
         inside: args.inside.into(),
         vote: args.vote.into(),
@@ -117,6 +119,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
     json!({
         "resolution": resolution,
         "voxel": voxel,
+        "method": options.method,
         "preset": args.preset_in_words(),
         "voxel_as_given": args.voxels.voxel.map(|length| length.to_string()),
         "unit": unit.map(|unit| unit.to_string()),
@@ -171,12 +174,19 @@ fn plan(
         let text = table::table(&summary::plan(&plan, unit.as_deref()));
         super::streams::write_stream(text.as_bytes())?;
     }
+    if let Some(cap) = options.max_memory.filter(|&cap| plan.memory > cap && plan.least_memory <= cap) {
+        report.warnings.push(format!(
+            "about {} of memory may be needed, and {} can be had: a run that takes a quarter more than that is ended",
+            words::bytes(plan.memory),
+            words::bytes(cap)
+        ));
+    }
     match options.max_memory {
-        Some(cap) if plan.memory > cap => {
+        Some(cap) if plan.least_memory > cap => {
             let coarsest = Options { voxel: VoxelSize::Along(2), ..*options };
-            let alone = planned(&coarsest).is_ok_and(|plan| plan.memory > cap);
+            let alone = planned(&coarsest).is_ok_and(|plan| plan.least_memory > cap);
             let hint = if alone { INPUTS_ALONE } else { "a lower --resolution, or a larger voxel" };
-            Err(Failure::memory(plan.memory, cap, args.max_memory).hint(hint))
+            Err(Failure::memory(plan.least_memory, cap, args.max_memory).hint(hint))
         }
         _ => Ok(Exit::Done),
     }

@@ -6,7 +6,8 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, Args};
 
 use super::backend::BackendChoice;
-use super::choices::{InsideChoice, OrientChoice, VoteChoice};
+use super::choices::{InsideChoice, OrientChoice, SolidMethod, VoteChoice};
+use super::exit::Failure;
 use super::keep::KeepArgs;
 use super::length::{Simplify, parse_size};
 use super::preset::Preset;
@@ -23,6 +24,9 @@ pub struct SolidArgs {
     /// Options that suit printing, scans or parts; those given by hand win
     #[arg(long, value_enum)]
     pub preset: Option<Preset>,
+    /// How the result is made where surfaces touch or cross
+    #[arg(long, value_enum, default_value_t = SolidMethod::Auto)]
+    pub method: SolidMethod,
     /// The size of the voxels.
     #[command(flatten)]
     pub voxels: VoxelArgs,
@@ -83,6 +87,18 @@ impl SolidArgs {
     /// Whether a result that is mostly lost is written.
     pub fn keeps_partial(&self) -> bool {
         self.keeping.keep_partial || self.writing.force
+    }
+
+    /// Refuses flags that contradict each other by their values, which the parser does not see.
+    pub fn check(&self) -> Result<(), Failure> {
+        let wants_voxels = [(self.rebuild, "--rebuild"), (self.no_fit, "--no-fit")];
+        match wants_voxels.into_iter().find(|(given, _)| *given && self.method == SolidMethod::Exact) {
+            Some((_, flag)) => Err(Failure::usage(format!(
+                "--method exact cannot be used with {flag}, which builds the whole surface from voxels"
+            ))
+            .hint("leave one of the two away")),
+            None => Ok(()),
+        }
     }
 
     /// Fills in what the preset sets and was not given by hand.

@@ -7,7 +7,7 @@ use super::report::RunReport;
 use super::session::Session;
 use super::table::{Row, table};
 use super::words::{self, UnitName};
-use super::{done, doubts, dropped};
+use super::{done, doubts, dropped, exact};
 use crate::io::{Loaded, Unit};
 use crate::mesh::Validity;
 use crate::pipeline::{Plan, Report};
@@ -25,6 +25,7 @@ fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
     rows.extend(report.options["preset"].as_str().map(|text| ("preset", text.to_owned())));
     if let Some(pipeline) = report.pipeline() {
         rows.extend(done::done(pipeline, unit).into_iter().map(|text| ("done", text)));
+        rows.extend(exact::rows(pipeline));
         if pipeline.lattice {
             rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
         }
@@ -119,8 +120,18 @@ fn solid(validity: &Validity) -> String {
     text
 }
 
-/// What `-v` adds: the stages, and where the votes were close.
+/// What `-v` adds: what was cut, where the votes were close, and the stages.
 fn details(report: &RunReport, pipeline: &Report, unit: UnitName<'_>) -> Vec<Row> {
+    let mut rows: Vec<Row> = exact::details(pipeline);
+    if pipeline.lattice {
+        rows.extend(votes(pipeline, unit));
+    }
+    rows.extend(stages(report));
+    rows
+}
+
+/// What the rays met, and where the votes were close.
+fn votes(pipeline: &Report, unit: UnitName<'_>) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
     let vote = &pipeline.vote;
     rows.push((
@@ -146,13 +157,14 @@ fn details(report: &RunReport, pipeline: &Report, unit: UnitName<'_>) -> Vec<Row
         );
         rows.push(("doubt", text));
     }
-    rows.extend(stages(report));
     rows
 }
 
 /// The rows of `--plan`.
 pub fn plan(plan: &Plan, unit: UnitName<'_>) -> Vec<Row> {
+    let mut rows: Vec<Row> = exact::planned(plan).into_iter().map(|text| ("exact", text)).collect();
     let lattice = match plan.dims {
+        [0, 0, 0] if plan.exact => vec![],
         [0, 0, 0] => vec![("voxel", "none: every closed surface stays as it is".into())],
         dims => vec![
             ("voxel", voxel(plan.voxel, dims, unit)),
@@ -164,7 +176,8 @@ pub fn plan(plan: &Plan, unit: UnitName<'_>) -> Vec<Row> {
         ("memory", format!("about {}", words::bytes(plan.memory))),
         ("time", format!("about {} on one core", words::seconds(plan.seconds))),
     ];
-    lattice.into_iter().chain(rest).collect()
+    rows.extend(lattice.into_iter().chain(rest));
+    rows
 }
 
 /// As many objects of a file are listed by name.

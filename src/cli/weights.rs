@@ -54,6 +54,7 @@ pub fn stages_of(verb: &str) -> Vec<(Stage, f64)> {
         "inspect" => vec![
             (Stage::Read, 20.0),
             (Stage::Examine, 50.0),
+            (Stage::Arrange, 20.0),
             (Stage::Orient, 5.0),
             (Stage::Ldi, 50.0),
             (Stage::Spans, 20.0),

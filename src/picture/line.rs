@@ -17,6 +17,8 @@ pub(super) enum Style {
         /// Opacity.
         strength: f32,
     },
+    /// A part of a line along which triangles cross.
+    Crossing,
     /// An edge with more than two triangles.
     Crowded,
     /// An edge with one triangle.
@@ -29,8 +31,9 @@ impl Style {
         match self {
             Self::Plain { .. } => 0,
             Self::Sharp { .. } => 1,
-            Self::Crowded => 2,
-            Self::Open => 3,
+            Self::Crossing => 2,
+            Self::Crowded => 3,
+            Self::Open => 4,
         }
     }
 
@@ -40,6 +43,7 @@ impl Style {
         match self {
             Self::Plain { strength } => (INK, 0.45 * strength, 0.8),
             Self::Sharp { strength } => (INK, 0.85 * strength, 1.3),
+            Self::Crossing => (Rgb::new(0.0, 0.03, 0.72), 1.0, 2.4),
             Self::Crowded => (Rgb::new(0.80, 0.0, 0.62), 1.0, 3.0),
             Self::Open => (Rgb::new(0.85, 0.0, 0.02), 1.0, 3.0),
         }

@@ -48,7 +48,7 @@ pub struct RenderOptions {
     /// Which edges are drawn.
     pub edges: EdgeDrawing,
     /// Whether defects are coloured: open edges red, edges with more than two triangles magenta, triangles that
-    /// intersect others yellow. Vertices of equal coordinates count as one.
+    /// intersect others yellow, and the lines along which they cross blue. Vertices of equal coordinates count as one.
     pub defects: bool,
     /// Samples along each side of a pixel, 1 to 8. One draws jagged outlines, 2 is good.
     pub supersampling: u32,

@@ -1,15 +1,16 @@
 //! A mesh in camera space.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::camera::Camera;
 use super::line::{Line, Style};
 use super::options::{EdgeDrawing, Painted, RenderOptions};
+use crate::arrange::{ArrangeError, crossing_curves};
 use crate::io::{Colours, Rgba, linear_from_srgb};
 use crate::mesh::edges::{Edge, Edges, copies};
-use crate::mesh::intersecting_triangles;
 use crate::mesh::weld::{has_repeated_index, welded_triangles};
+use crate::mesh::{TriMesh, intersecting_triangles};
 use crate::progress::{Progress, Stopped};
 
 /// Cosine of the angle from which on an edge is sharp and normals are not averaged over it: 30 degrees.
@@ -54,7 +55,11 @@ impl Scene {
         let copies: Vec<u32> = copies(&welded, mesh.positions.len()).iter().map(|&[copy, _]| copy).collect();
         let counts = |&t: &u32| flat[t as usize] != Vec3::ZERO && copies.binary_search(&t).is_err();
         let obstacles = (0..corners.len() as u32).filter(counts).collect();
-        let lines = lines(&welded, &seen, &flat, options);
+        let mut lines = lines(&welded, &seen, &flat, options);
+        if marked.contains(&true) {
+            lines.extend(crossings(mesh, camera, progress)?);
+            lines.sort_by_key(|line| line.style.rank());
+        }
         let linear = |colour: Rgba| Vec3::from_array([0, 1, 2].map(|k| linear_from_srgb(colour[k]) as f32));
         let paint = |colours: &Colours| {
             (0..mesh.triangles.len()).into_par_iter().map(|t| colours.corners(mesh, t).map(linear)).collect()
@@ -131,6 +136,18 @@ fn lines(triangles: &[[u32; 3]], seen: &[Vec3], flat: &[Vec3], options: &RenderO
     lines.retain(|line| !matches!(line.style, Style::Plain { strength } if strength <= 0.0));
     lines.sort_by_key(|line| line.style.rank());
     lines
+}
+
+/// The lines along which triangles cross; none where they cross in more places than can be cut.
+fn crossings(mesh: &TriMesh, camera: &Camera, progress: &Progress) -> Result<Vec<Line>, Stopped> {
+    match crossing_curves(mesh, progress) {
+        Ok(curves) => {
+            let line = |ends: [DVec3; 2]| Line { ends: ends.map(|p| camera.project(p)), style: Style::Crossing };
+            Ok(curves.into_iter().map(line).collect())
+        }
+        Err(ArrangeError::Stopped(stopped)) => Err(stopped),
+        Err(_) => Ok(Vec::new()),
+    }
 }
 
 /// How much of a sharp edge is drawn: nothing at 30 degrees, all of it from 60 degrees on, and of edges without exactly two

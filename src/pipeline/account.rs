@@ -96,6 +96,8 @@ fn thin_regions(spans: &[Spans], planes: &[Plane], surface: &Surface, lattice: &
 /// Shares of rays and spans above which a user should know.
 const MANY_LOST: f64 = 0.02;
 const MANY_SILENT: f64 = 0.25;
+/// And the part of the volume that rounding may take from an exact result without a word.
+const ROUNDED: f64 = 1e-6;
 
 /// What a user should know of a report that is complete but for that.
 pub(super) fn warnings(report: &Report) -> Vec<Warning> {
@@ -113,6 +115,12 @@ pub(super) fn warnings(report: &Report) -> Vec<Warning> {
         warnings.push(Warning::Fallback { reason: reason.clone() });
     }
     warnings
+}
+
+/// What a user should know of what was cut exactly.
+fn rounded(report: &Report) -> Option<Warning> {
+    let share = report.exact.as_ref()?.volume_error;
+    (share > ROUNDED).then_some(Warning::Rounded { share })
 }
 
 /// With a larger share of silent rays there is no solid to speak of: of the real files that are
@@ -148,6 +156,8 @@ pub(super) fn finished(mut outcome: Draft, apart: &Apart, stages: Stages<'_>) ->
         let topology::Found { after, buried } = found;
         let before = report.topology.take().unwrap_or_default();
         report.topology = Some(TopologyReport { after, buried, before: None, new_tunnels: None, ..before });
+        let words = rounded(report);
+        report.warnings.extend(words);
     } else {
         report.topology = Some(topology::compared(&outcome.mesh, &outcome.sources, apart));
         let words = warnings(report);
@@ -160,6 +170,7 @@ pub(super) fn finished(mut outcome: Draft, apart: &Apart, stages: Stages<'_>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arrange::ArrangeReport;
 
     #[test]
     fn why_the_main_processor_stepped_in_is_a_line_of_the_report() {
@@ -168,5 +179,16 @@ mod tests {
         report.ldi.made_by.fallback = Some("it melted".into());
         let lines = warnings(&report);
         assert!(lines.len() == 1 && lines[0].to_string().contains("it melted"), "{lines:?}");
+    }
+
+    #[test]
+    fn a_volume_that_rounding_changes_by_more_than_a_millionth_is_told() {
+        let told = |volume_error| {
+            let exact = Some(ArrangeReport { volume_error, ..ArrangeReport::default() });
+            rounded(&Report { exact, ..Report::default() }).map(|told| told.to_string())
+        };
+        assert_eq!(told(0.9e-6), None);
+        let line = told(2e-6).expect("it is more");
+        assert!(line.contains("the volume by 0.0002 %"), "{line}");
     }
 }

@@ -4,6 +4,7 @@ use super::{
     BooleanError, CanalError, DistanceError, FieldError, HollowError, LimitError, MorphologyError, ThickenError,
     ThicknessError,
 };
+use crate::arrange::ArrangeError;
 use crate::field::FillError;
 use crate::field::language::BuildError;
 use crate::mesh::NotSolid;
@@ -34,7 +35,7 @@ pub enum Trouble<'a> {
     /// The graphics processor cannot do it.
     Device,
     /// An exact result was asked for, and there is none.
-    NotExact,
+    NotExact(&'a ArrangeError),
     /// What was made is not valid.
     NotSolid(&'a NotSolid),
     /// The caller contradicts itself: the expression names what was not given.
@@ -71,7 +72,7 @@ impl Advice for BooleanError {
             Self::Lattice(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
             Self::Nothing(_) => Trouble::Input,
-            Self::NotExact(_) => Trouble::NotExact,
+            Self::NotExact(why) => Trouble::NotExact(why),
             Self::Device { .. } => Trouble::Device,
             Self::NotSolid(what) => Trouble::NotSolid(what),
         }
@@ -80,7 +81,8 @@ impl Advice for BooleanError {
     fn hint(&self) -> Option<String> {
         match self {
             Self::Device { hint, .. } => Some(hint.clone()),
-            Self::NotExact(_) => Some("--method auto closes what is open, with voxels".into()),
+            Self::NotExact(ArrangeError::Open { .. }) => Some("--method auto closes what is open, with voxels".into()),
+            Self::NotExact(_) => Some("--method auto does it with voxels".into()),
             _ => None,
         }
     }

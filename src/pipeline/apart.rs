@@ -120,6 +120,11 @@ impl Apart {
         self.shell_of(operand, triangle).is_none_or(|shell| self.fate(shell as usize).is_open())
     }
 
+    /// Whether each shell that is not decided runs along each of its edges one way as often as the other.
+    pub(super) fn open_balances(&self) -> bool {
+        self.fates().all(|(fate, shell)| !fate.is_open() || shell.balanced)
+    }
+
     /// How many triangles touch others.
     pub(super) fn touching(&self) -> usize {
         self.contacts.touched.iter().filter(|touched| **touched).count()

@@ -69,9 +69,9 @@ fn evaluate(
     plan::check_standing(&meshes, options.max_memory)?;
 
     let task = Task { meshes: &meshes, classes: &classes, expression, options, h, progress };
-    let mut draft = task.draft()?;
+    let mut draft = task.draft().map_err(|error| frame.error(error))?;
     draft.report.inside = options.inside;
-    Ok(draft.counted(&meshes).global(&frame).judged(operands, progress)?)
+    Ok(draft.global(&frame).counted(&given).judged(operands, progress)?)
 }
 
 /// A boolean of operands near the origin.
@@ -108,10 +108,21 @@ impl Task<'_> {
         if let Exact::Done(draft) = exact {
             return Ok(account::finished(draft, &apart, stages));
         }
-        if let Exact::Open(closed) = exact
-            && let Some(draft) = self.sealed(&closed, &mut stages)?
-        {
-            return Ok(account::finished(draft, &apart, stages));
+        if let Exact::Open(closed) = exact {
+            if meshes.len() > 1 {
+                if let Some(draft) = self.sealed(&closed, &mut stages)? {
+                    return Ok(account::finished(draft, &apart, stages));
+                }
+            } else if let Some(mut draft) = self.cut_first(&mut stages)? {
+                for (own, given) in draft.report.orient.iter_mut().zip(&rest.reports) {
+                    // What was dropped is counted in the operand's own triangles, not in pieces.
+                    own.degenerate_dropped = given.degenerate_dropped;
+                    own.duplicates_dropped = given.duplicates_dropped;
+                    own.both_sided = given.both_sided;
+                }
+                draft.report.stages = stages.finish();
+                return Ok(draft);
+            }
         }
         let draft = match job.beside(&rest, standing, &mut stages)? {
             Some(draft) => draft,

@@ -139,7 +139,10 @@ impl Job<'_> {
             return Err(why.into());
         }
         if touch(&draft.mesh, &standing.mesh, self.progress)? {
-            return Ok(Exact::None);
+            return match self.options.method {
+                Method::Exact => Err(BooleanError::NotExact(ArrangeError::Rounding)),
+                _ => Ok(Exact::None),
+            };
         }
         let Standing { mut mesh, mut sources } = standing.clone();
         mesh.append(&draft.mesh);

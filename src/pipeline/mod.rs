@@ -6,6 +6,7 @@
 
 mod account;
 mod advice;
+mod ahead;
 mod apart;
 mod boolean;
 mod canals;

@@ -6,6 +6,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::{BooleanError, Operand, Outcome, TriangleSource};
+use crate::arrange::ArrangeError;
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
 use crate::orient::OrientReport;
@@ -56,8 +57,19 @@ impl<'a> Ordered<'a> {
             BooleanError::Index { operand, error } => {
                 BooleanError::Index { operand: self.given.get(operand).copied().unwrap_or(operand), error }
             }
+            BooleanError::NotExact(error) => BooleanError::NotExact(self.not_exact(error)),
             other => other,
         }
+    }
+
+    fn not_exact(&self, error: ArrangeError) -> ArrangeError {
+        let ArrangeError::Open { edges, mut first, closed: of_places } = error else { return error };
+        let mut closed = of_places.clone();
+        for (&given, &is_closed) in self.given.iter().zip(&of_places) {
+            closed[given] = is_closed;
+        }
+        first.operand = self.given.get(first.operand).copied().unwrap_or(first.operand);
+        ArrangeError::Open { edges, first, closed }
     }
 }
 

@@ -70,7 +70,7 @@ impl Outcome {
         Self { solid, sources, colours, texture, lattice, report }
     }
 
-    /// What each triangle is: kept, rebuilt or made up. `operands`: those that the outcome was made of, in the same order.
+    /// What each triangle is: kept, cut, rebuilt or made up. `operands`: those that the outcome was made of, in the same order.
     pub fn kinds<'a>(&self, operands: impl IntoIterator<Item: Into<Operand<'a>>>) -> Vec<TriangleKind> {
         let operands: Vec<&TriMesh> = operands.into_iter().map(|operand| operand.into().mesh).collect();
         kinds_of(&self.solid, &self.sources, &operands)

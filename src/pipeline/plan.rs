@@ -3,15 +3,13 @@
 use glam::DVec3;
 use serde::Serialize;
 
-use super::apart::Apart;
+use super::ahead::{Ahead, Way};
 use super::frame::Frame;
 use super::outlook::Outlook;
-use super::{BooleanError, LimitError, Operand, Options, SurfaceOptions, VoxelSize, sizing};
+use super::{BooleanError, LimitError, Method, Operand, Options, SurfaceOptions, VoxelSize, sizing};
 use crate::lattice::Lattice;
-use crate::ldi::{Expression, MAX_CROSSINGS, MAX_TRIANGLES};
+use crate::ldi::{MAX_CROSSINGS, MAX_TRIANGLES};
 use crate::mesh::{Bounds, TriMesh};
-use crate::progress::Progress;
-use crate::survey::Soup;
 
 /// What a run would cost, before it is run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -21,12 +19,18 @@ pub struct Plan {
     pub voxel: f64,
     /// Voxels along x, y, z.
     pub dims: [i32; 3],
+    /// Whether what touches or crosses is cut exactly: without voxels, unless there are operands with holes, which are made whole first.
+    pub exact: bool,
+    /// Triangles that touch others, as far as that was looked for.
+    pub touching: u64,
     /// Estimated voxels near the surface.
     pub voxels_near_surface: u64,
     /// Estimated triangles of the result.
     pub triangles: u64,
     /// Estimated peak memory, bytes.
     pub memory: u64,
+    /// Bytes below which the run is refused: of an exact one, whose memory depends on what crosses what, those that its triangles take alone.
+    pub least_memory: u64,
     /// Estimated seconds on one core of an ordinary machine.
     pub seconds: f64,
 }
@@ -34,7 +38,12 @@ pub struct Plan {
 impl Plan {
     /// Of two runs one after the other: what the first needed is free when the second begins.
     pub fn then(self, next: Self) -> Self {
-        Self { memory: self.memory.max(next.memory), seconds: self.seconds + next.seconds, ..next }
+        Self {
+            memory: self.memory.max(next.memory),
+            least_memory: self.least_memory.max(next.least_memory),
+            seconds: self.seconds + next.seconds,
+            ..next
+        }
     }
 }
 
@@ -148,14 +157,25 @@ pub fn plan<'a>(operands: impl IntoIterator<Item: Into<Operand<'a>>>, options: &
     let meshes: Vec<&TriMesh> = local.iter().map(AsRef::as_ref).collect();
     let bounds = sizing::bounds(meshes.iter().copied()).map_err(|operand| BooleanError::Empty { operand })?;
     let h = sizing::spacing(&bounds, options.voxel)?;
-    let (rest, touching) = rest(&meshes, options)?;
-    let standing = Input::of(&meshes).triangles - rest.triangles.len();
+    let Ahead { rest, touching, way } = Ahead::of(&meshes, options)?;
+    let given = Input::of(&meshes).triangles;
+    match way {
+        Way::Exact => return Ok(Plan::of_exact(h, given, touching)),
+        Way::Sealed(open) => {
+            let alone = Options { method: Method::Voxel, voxel: VoxelSize::Length(h), ..*options };
+            let parts = open.iter().map(|&n| plan([meshes[n]], &alone)).collect::<Result<Vec<Plan>, _>>()?;
+            return Ok(Plan::of_sealed(parts.into_iter(), Plan::of_exact(h, given, touching)));
+        }
+        Way::Voxel => {}
+    }
+    let standing = given.saturating_sub(rest.triangles.len());
     let Some(bounds) = rest.bounds() else { return Ok(Plan::of_standing(h, standing)) };
     let lattice = sizing::lattice(&bounds, VoxelSize::Length(h))?;
     let input = Input { touching, ..Input::surveyed(&[&rest]) };
     let plan = input.cost(&lattice, &options.surface(), Offsets::default());
     let memory = plan.memory + (STANDING_BYTES * standing as f64) as u64;
-    Ok(Plan { triangles: plan.triangles + standing as u64, memory, ..plan })
+    let touching = touching as u64;
+    Ok(Plan { triangles: plan.triangles + standing as u64, touching, memory, least_memory: memory, ..plan })
 }
 
 /// What offsets of a solid would cost, over a lattice around the mesh of a solid that exists, or of one that will be about where `mesh` is.
@@ -163,24 +183,19 @@ pub(super) fn of_offsets(mesh: &TriMesh, lattice: &Lattice, options: &SurfaceOpt
     Input::surveyed(&[mesh]).offsets_cost(lattice, options, offsets)
 }
 
-/// What needs voxels of the operands: all but the shells that stand as they are, or are left out. And how many triangles touch others.
-fn rest(operands: &[&TriMesh], options: &Options) -> Result<(TriMesh, usize), BooleanError> {
-    let progress = Progress::none();
-    let soup = Soup::of(operands, options.orient, &progress)?.with_inside(options.inside);
-    // Which shells stand does not depend on the expression, only what becomes of them does.
-    let apart = Apart::find(&soup, &Expression::union(operands.len()), options, &progress)?;
-    Ok((apart.rest(&soup).mesh, apart.touching()))
-}
-
 impl Plan {
     /// For shells that stand as they are, without a lattice.
-    fn of_standing(h: f64, triangles: usize) -> Self {
+    pub(super) fn of_standing(h: f64, triangles: usize) -> Self {
+        let memory = (BASE_BYTES + STANDING_BYTES * triangles as f64) as u64;
         Self {
             voxel: h,
             dims: [0; 3],
+            exact: false,
+            touching: 0,
             voxels_near_surface: 0,
             triangles: triangles as u64,
-            memory: (BASE_BYTES + STANDING_BYTES * triangles as f64) as u64,
+            memory,
+            least_memory: memory,
             seconds: STANDING_SECONDS[0] + STANDING_SECONDS[1] * triangles as f64,
         }
     }
@@ -347,9 +362,12 @@ impl Input {
         Plan {
             voxel: lattice.h,
             dims: lattice.dims.to_array(),
+            exact: false,
+            touching: self.touching as u64,
             voxels_near_surface: (2.0 * self.cells(lattice)) as u64,
             triangles: 0,
             memory: memory as u64,
+            least_memory: memory as u64,
             seconds: 0.0,
         }
     }

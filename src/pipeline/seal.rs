@@ -1,23 +1,55 @@
-//! Operands with holes are made whole before the others cut them.
+//! Operands with holes: cut first where they cross themselves, and made whole before others cut them.
 
 use super::boolean::Task;
 use super::exact::Pile;
 use super::rebuild::Job;
 use super::stages::Stages;
-use super::{BooleanError, Draft, Method, Options, Report, TriangleSource};
-use crate::arrange::ArrangeError;
+use super::{BooleanError, Draft, Method, Options, Precision, Report, TriangleSource};
+use crate::arrange::{ArrangeError, cut};
 use crate::lattice::Lattice;
 use crate::ldi::Expression;
 use crate::progress::Stage;
 
 impl Task<'_> {
+    /// The repair of an operand with holes that was cut first where it crosses itself: then its crossing curves are edges, and what lies on either
+    /// side of them is judged by itself. `None` where nothing crosses, or where nothing is enclosed then.
+    pub(super) fn cut_first(&self, stages: &mut Stages<'_>) -> Result<Option<Draft>, BooleanError> {
+        let Self { meshes, classes, expression, options, h, progress } = *self;
+        let single = options.precision == Precision::Single;
+        let pieces = match cut(meshes[0], single, progress) {
+            Ok(pieces) if pieces.cut > 0 => pieces,
+            Err(ArrangeError::Stopped(stopped)) => return Err(stopped.into()),
+            _ => return Ok(None),
+        };
+        let class = |&t: &u32| classes[0][t as usize];
+        let own = if classes[0].is_empty() { Vec::new() } else { pieces.sources.iter().map(class).collect() };
+        let task = Task {
+            meshes: &[&pieces.mesh],
+            classes: &[own],
+            expression,
+            options: &Options { method: Method::Voxel, ..*options },
+            h,
+            progress,
+        };
+        let mut draft = match task.draft() {
+            Ok(draft) => draft,
+            Err(BooleanError::Nothing(_)) => return Ok(None),
+            Err(error) => return Err(error),
+        };
+        for source in &mut draft.sources {
+            if let TriangleSource::Operand { triangle, .. } = source {
+                *triangle = pieces.sources[*triangle as usize];
+            }
+        }
+        stages.took(&draft.report.stages);
+        draft.report.cut = pieces.cut;
+        Ok(Some(draft))
+    }
+
     /// The exact boolean of operands of which some have holes: those are repaired by themselves, as they would be alone; `None` where one
     /// encloses nothing by itself, or where there is no exact result of what they make.
     pub(super) fn sealed(&self, closed: &[bool], stages: &mut Stages<'_>) -> Result<Option<Draft>, BooleanError> {
         let Self { meshes, classes, expression, options, h, progress } = *self;
-        if meshes.len() < 2 {
-            return Ok(None);
-        }
         let mut pile = Pile::default();
         let mut report: Option<(Report, Lattice)> = None;
         for (n, &mesh) in meshes.iter().enumerate() {
@@ -28,7 +60,7 @@ impl Task<'_> {
                 pile.add(mesh, all);
                 continue;
             }
-            let alone = Options { method: Method::Voxel, ..*options };
+            let alone = Options { method: Method::Auto, ..*options };
             let task = Task {
                 meshes: &meshes[n..=n],
                 classes: &classes[n..=n],

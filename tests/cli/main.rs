@@ -5,6 +5,7 @@ mod common;
 
 mod compare;
 mod documents;
+mod exact;
 mod faults;
 mod fields;
 mod files;

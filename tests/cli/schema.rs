@@ -142,6 +142,9 @@ fn every_verb_reports_what_the_schema_says() {
         ("repair testdata/broken_mug.obj -o OUT/mug.stl --resolution 24 --keep-partial", "solid"),
         ("repair testdata/torus.ply -o OUT/torus.stl --resolution 24", "solid"),
         ("repair testdata/torus.ply --plan --resolution 24", "plan"),
+        ("repair testdata/overlapping_boxes.obj -o OUT/boxes.stl", "solid"),
+        ("repair testdata/overlapping_boxes.obj --plan", "plan"),
+        ("inspect testdata/overlapping_boxes.obj", "inspection"),
         ("union testdata/torus.ply testdata/open_cube.off -o OUT/u.stl --resolution 24 --keep-partial", "solid"),
         ("intersection testdata/torus.ply testdata/torus.ply -o OUT/i.stl --resolution 24", "solid"),
         ("difference testdata/noisy_cube.off testdata/torus.ply -o OUT/d.stl --resolution 24 --keep-partial", "solid"),
@@ -196,6 +199,7 @@ fn runs_that_fail_report_what_the_schema_says() {
     for (line, status) in [
         ("repair testdata/open_sheet.obj -o OUT/a.stl --voxel 0.4mm", 2),
         ("inspect OUT/nothing.stl", 4),
+        ("repair testdata/open_cube.off -o OUT/a.stl --method exact", 3),
         ("compare testdata/torus.ply testdata/open_cube.off --samples 500 --fail-on-max 0.01", 3),
         ("repair testdata/torus.ply --plan --max-memory 1M --resolution 512 --rebuild", 5),
     ] {

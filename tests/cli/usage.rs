@@ -61,6 +61,12 @@ fn wrong_usage_exits_with_2_and_a_sentence() {
         ("repair testdata/torus.ply -o OUT/a.stl --voxel -1", "is not above zero"),
         ("erode testdata/torus.ply -o OUT/a.stl -r -2mm", "`dilate` grows by it"),
         ("erode testdata/torus.ply -o OUT/a.stl -r 1,5", "decimals are written with a point"),
+        (
+            "repair testdata/torus.ply -o OUT/a.stl --method exact --rebuild",
+            "--method exact cannot be used with --rebuild",
+        ),
+        ("union testdata/torus.ply x.stl -o OUT/a.stl --method exact --no-fit", "cannot be used with --no-fit"),
+        ("repair testdata/torus.ply -o OUT/a.stl --method cells", "auto, exact, voxel"),
         ("testdata/torus.ply", "meshwright repair testdata/torus.ply -o testdata/torus_repaired.ply"),
         ("-o OUT/a.stl testdata/torus.ply", "a verb comes first"),
         ("repair testdata/torus.ply testdata/open_cube.off -o OUT/a.stl", "meshwright union"),

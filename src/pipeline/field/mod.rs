@@ -152,7 +152,7 @@ pub fn field_surface(
         lattice: true,
         fit: fitted,
         closed_triangles: made,
-        triangles: TriangleCounts { kept: 0, rebuilt: origins.len() - made, made_up: made },
+        triangles: TriangleCounts { rebuilt: origins.len() - made, made_up: made, ..TriangleCounts::default() },
         stages: stages.finish(),
         ..Report::default()
     };

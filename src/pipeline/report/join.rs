@@ -22,6 +22,7 @@ impl Report {
             (one, two) => one.or(two),
         };
         self.crumbs = Dropped::and(self.crumbs, other.crumbs);
+        self.cut += other.cut;
         self.closed_triangles += other.closed_triangles;
         self.warnings.extend(other.warnings);
         self

@@ -41,6 +41,8 @@ pub struct Report {
     pub standing: StandingReport,
     /// What was cut exactly; `None` where nothing was.
     pub exact: Option<ArrangeReport>,
+    /// Triangles of operands with holes that were cut where they cross each other, before rays were cast.
+    pub cut: usize,
     /// Bodies, voids and tunnels before and after; `None` where an operation changes them.
     pub topology: Option<TopologyReport>,
     /// Cleaning and orientation of each operand.

@@ -23,15 +23,20 @@ pub struct StandingReport {
 pub enum TriangleKind {
     /// A triangle of an operand, with the same three corners.
     Kept,
-    /// It lies on the surface of an operand, but is made anew: cut, moved, simplified, or from voxels.
+    /// It lies on the surface of an operand, but is made anew: moved, simplified, or from voxels.
     Rebuilt,
     /// No surface of an operand is there.
     MadeUp,
+    /// It lies in the plane of a triangle of an operand, and has other corners: a piece of it, or of several in one plane.
+    Cut,
 }
 
 impl TriangleKind {
     /// Every kind; its place here is its number in a map.
-    pub const ALL: [Self; 3] = [Self::Kept, Self::Rebuilt, Self::MadeUp];
+    pub const ALL: [Self; 4] = [Self::Kept, Self::Rebuilt, Self::MadeUp, Self::Cut];
+
+    /// Every kind, from what is least changed to what is most.
+    pub const BY_CHANGE: [Self; 4] = [Self::Kept, Self::Cut, Self::Rebuilt, Self::MadeUp];
 
     /// The word for it, the same in summaries, legends and reports.
     pub fn word(self) -> &'static str {
@@ -39,6 +44,7 @@ impl TriangleKind {
             Self::Kept => "kept",
             Self::Rebuilt => "rebuilt",
             Self::MadeUp => "made up",
+            Self::Cut => "cut",
         }
     }
 }
@@ -49,6 +55,8 @@ impl TriangleKind {
 pub struct TriangleCounts {
     /// Triangles of operands, with the same corners.
     pub kept: usize,
+    /// Triangles in the planes of operands' triangles, with other corners.
+    pub cut: usize,
     /// Triangles on the surface of operands, but made anew.
     pub rebuilt: usize,
     /// Triangles where no operand has a surface.
@@ -58,14 +66,15 @@ pub struct TriangleCounts {
 impl TriangleCounts {
     /// The numbers of each of these kinds.
     pub fn of(kinds: &[TriangleKind]) -> Self {
-        let [kept, rebuilt, made_up] = TriangleKind::ALL.map(|kind| kinds.iter().filter(|k| **k == kind).count());
-        Self { kept, rebuilt, made_up }
+        let [kept, rebuilt, made_up, cut] = TriangleKind::ALL.map(|kind| kinds.iter().filter(|k| **k == kind).count());
+        Self { kept, cut, rebuilt, made_up }
     }
 
     /// How many are of a kind.
     pub fn count(&self, kind: TriangleKind) -> usize {
         match kind {
             TriangleKind::Kept => self.kept,
+            TriangleKind::Cut => self.cut,
             TriangleKind::Rebuilt => self.rebuilt,
             TriangleKind::MadeUp => self.made_up,
         }

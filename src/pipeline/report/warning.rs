@@ -6,6 +6,7 @@ use serde::{Serialize, Serializer};
 
 use super::ThinReport;
 use super::nothing::{NothingEnclosed, keeping_voxel};
+use crate::digits;
 
 /// One thing that a user should know. Its words are those of `Display`, and in JSON too.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +27,11 @@ pub enum Warning {
     Fallback {
         /// Why not.
         reason: String,
+    },
+    /// Rounding to the numbers that a file holds has changed the volume of an exact result.
+    Rounded {
+        /// The part of the volume by which it has changed.
+        share: f64,
     },
     /// Beside the shells that stay as they are, the rest of the input encloses nothing.
     NothingMore(NothingEnclosed),
@@ -49,6 +55,11 @@ impl fmt::Display for Warning {
             Self::Fallback { reason } => {
                 write!(f, "the graphics processor failed, so the main one did its work: {reason}")
             }
+            Self::Rounded { share } => write!(
+                f,
+                "the result is exact but for the numbers that files hold: rounding to them has changed the volume by {} %",
+                digits::number(100.0 * share)
+            ),
             Self::NothingMore(why) => write!(f, "beside what stays as it is, nothing more is enclosed: {why}"),
         }
     }
