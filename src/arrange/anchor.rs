@@ -75,7 +75,11 @@ impl Middle {
     fn of(refined: &Refined, piece: &Piece) -> Self {
         let corners = piece.corners.map(|p| refined.points.exact(p));
         let near = piece.corners.map(|p| refined.points.approximate(p).truncate());
-        let near = (near[0] + near[1] + near[2]) / 3.0;
+        Self::between(corners, (near[0] + near[1] + near[2]) / 3.0)
+    }
+
+    /// The middle of three points, and where it is nearly.
+    fn between(corners: [Exact; 3], near: DVec2) -> Self {
         let weights = corners.map(|p: Exact| p.w.wide());
         let others = [weights[1].mul(&weights[2]), weights[2].mul(&weights[0]), weights[0].mul(&weights[1])];
         let along = |k: usize| (0..3).fold(Wide::ZERO, |sum, n| sum.add(&corners[n].at[k].wide().mul(&others[n])));
@@ -194,5 +198,69 @@ impl Grid {
         let [x, y] = self.cell(p);
         let cell = y * self.across + x;
         &self.facets[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use num_bigint::BigInt;
+    use proptest::prelude::*;
+
+    use super::super::plane::Plane;
+    use super::super::tests::{Ratio, place, sign, triangle};
+    use super::*;
+
+    /// The middle of three points.
+    fn middle([a, b, c]: [&Ratio; 3]) -> Ratio {
+        let others = [&b.w * &c.w, &c.w * &a.w, &a.w * &b.w];
+        let at = [0, 1, 2].map(|k| &a.at[k] * &others[0] + &b.at[k] * &others[1] + &c.at[k] * &others[2]);
+        Ratio { at, w: &a.w * &others[0] * 3 }
+    }
+
+    /// The side of a line, seen from above, of the point moved by (e, e²): with a number for e that is less than all that matters.
+    fn side(p: &Ratio, a: [i32; 3], b: [i32; 3]) -> i32 {
+        let unit = BigInt::from(1) << 4000;
+        let w = &p.w * &unit * &unit;
+        let (x, y) = ((&p.at[0] * &unit + &p.w) * &unit, &p.at[1] * &unit * &unit + &p.w);
+        let [u, v] = [0, 1].map(|k| i64::from(b[k]) - i64::from(a[k]));
+        sign(&((y - &w * a[1]) * u - (x - &w * a[0]) * v))
+    }
+
+    /// A point of the lattice, or one of three planes.
+    fn point() -> impl Strategy<Value = Exact> {
+        let planes = prop::array::uniform3(triangle()).prop_filter_map("no point", |planes| {
+            let planes: [Plane; 3] = planes.map(|(_, plane)| plane);
+            Exact::of_planes(planes.each_ref()).filter(|exact| exact.approximate().abs().max_element() < 2f64.powi(30))
+        });
+        prop_oneof![place().prop_map(Exact::lattice), planes]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn sides_of_the_middle_of_a_piece(
+            corners in prop::array::uniform3(point()), a in place(), b in place(), (other, _) in triangle(),
+        ) {
+            let exact = Middle::between(corners, DVec2::ZERO);
+            let ratios = corners.each_ref().map(Ratio::of);
+            let truth = middle(ratios.each_ref());
+            prop_assert_eq!(exact.side_of_line(a, b), side(&truth, a, b));
+            let (facets, _) = Facets::new(&other, &[[0, 1, 2]]);
+            prop_assert_eq!(exact.side_of_plane(&facets, 0), sign(&truth.volume(other)));
+        }
+
+        /// The middle lies on the line or at its end: then the small move decides.
+        #[test]
+        fn a_middle_on_the_line(p in place(), way in prop::array::uniform2(-3i32..=3), high in place()) {
+            let p = p.map(|x| x / 2);
+            let at = |n: i32| [p[0] + n * way[0], p[1] + n * way[1], high[2]];
+            let exact = Middle::between([Exact::lattice(p); 3], DVec2::ZERO);
+            for (from, to) in [(-2, 5), (5, -2), (0, 1), (1, 0), (2, 3)] {
+                let truth = side(&Ratio::lattice(p), at(from), at(to));
+                prop_assert_eq!(exact.side_of_line(at(from), at(to)), truth);
+                prop_assert!(truth != 0 || way == [0, 0]);
+            }
+        }
     }
 }

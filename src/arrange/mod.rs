@@ -36,6 +36,8 @@ mod report;
 mod round;
 mod sheets;
 mod solve;
+#[cfg(test)]
+mod tests;
 mod turn;
 mod wide;
 

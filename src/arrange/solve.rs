@@ -44,6 +44,22 @@ pub fn arrange(
     options: &ArrangeOptions<'_>,
     progress: &Progress,
 ) -> Result<Arranged, ArrangeError> {
+    match attempted(mesh, operands, options, progress) {
+        // On the lattice more triangles may touch than where they were looked at: then only one of two neighbours is cut at their edge.
+        Err(ArrangeError::Open { .. }) if !options.suspects.is_empty() => {
+            attempted(mesh, operands, &ArrangeOptions { suspects: &[], ..*options }, progress)
+        }
+        result => result,
+    }
+}
+
+/// [`arrange`], with only the suspects looked at.
+fn attempted(
+    mesh: &TriMesh,
+    operands: &Operands,
+    options: &ArrangeOptions<'_>,
+    progress: &Progress,
+) -> Result<Arranged, ArrangeError> {
     let input: Vec<DVec3> = match options.single {
         true => mesh.positions.iter().map(|p| p.as_vec3().as_dvec3()).collect(),
         false => mesh.positions.clone(),

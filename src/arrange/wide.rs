@@ -194,6 +194,14 @@ impl Wide {
     }
 }
 
+#[cfg(test)]
+impl Wide {
+    /// The limbs in use, the lowest first, and whether the number is negative.
+    pub(crate) fn parts(&self) -> (&[u64], bool) {
+        (self.in_use(), self.negative)
+    }
+}
+
 /// A Mersenne prime: points are found again by their coordinates modulo it.
 pub(crate) const PRIME: u64 = (1 << 61) - 1;
 

@@ -2,9 +2,9 @@
 //! rays in floating point.
 
 mod boxes;
-mod chain;
+pub mod chain;
 mod order;
 mod referee;
 mod soups;
-mod support;
+pub mod support;
 mod touching;

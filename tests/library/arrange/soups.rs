@@ -1,13 +1,14 @@
 //! Random soups of closed shells: what is inside of the result is what winding numbers say; and volumes add up.
 
 use super::referee::{is_clear, winding};
-use super::support::{Shell, asked, cases, expression, inside_out, piled, result, turned_shell, volume, whole_shell};
+use super::support::{
+    Shell, arranged_by, asked, cases, expression, inside_out, piled, result, turned_shell, volume, whole_shell,
+};
 use crate::common::exact::spread;
 use glam::DVec3;
-use meshwright::arrange::{ArrangeOptions, arrange};
+use meshwright::arrange::ArrangeOptions;
 use meshwright::ldi::{Expression, Inside};
 use meshwright::mesh::TriMesh;
-use meshwright::progress::Progress;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 
@@ -31,10 +32,9 @@ fn meshes(soup: &[Vec<(Shell, bool)>]) -> Vec<TriMesh> {
 /// Looks at points of space: inside of the result is what the expression says of the operands' winding numbers.
 fn check(soup: &[Vec<(Shell, bool)>], tree: &Expression, inside: Inside, single: bool) -> Result<(), TestCaseError> {
     let operands = meshes(soup);
-    let (all, counts) = piled(&operands);
+    let (all, _) = piled(&operands);
     prop_assume!(!all.triangles.is_empty());
-    let counts = counts.with_inside(inside);
-    let made = arrange(&all, &counts, &ArrangeOptions { single, ..asked(tree) }, &Progress::none());
+    let made = arranged_by(inside, &operands, &ArrangeOptions { single, ..asked(tree) });
     let made = made.map_err(|error| TestCaseError::fail(format!("{error}")))?;
     if !made.mesh.triangles.is_empty() {
         let found = crate::common::proofs::state(&made.mesh, true);

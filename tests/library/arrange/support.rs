@@ -4,7 +4,7 @@ use crate::common::proofs::state;
 use crate::common::shapes::{cuboid, torus_of};
 use glam::{DQuat, DVec3};
 use meshwright::arrange::{ArrangeError, ArrangeOptions, Arranged, arrange};
-use meshwright::ldi::{Expression, Operands};
+use meshwright::ldi::{Expression, Inside, Operands};
 use meshwright::mesh::TriMesh;
 use meshwright::orient::OrientMode;
 use meshwright::progress::Progress;
@@ -24,8 +24,17 @@ pub fn piled(operands: &[TriMesh]) -> (TriMesh, Operands) {
 }
 
 pub fn arranged(operands: &[TriMesh], options: &ArrangeOptions<'_>) -> Result<Arranged, ArrangeError> {
+    arranged_by(Inside::Positive, operands, options)
+}
+
+/// The arrangement of operands of which these winding numbers are inside.
+pub fn arranged_by(
+    inside: Inside,
+    operands: &[TriMesh],
+    options: &ArrangeOptions<'_>,
+) -> Result<Arranged, ArrangeError> {
     let (mesh, counts) = piled(operands);
-    arrange(&mesh, &counts, options, &Progress::none())
+    arrange(&mesh, &counts.with_inside(inside), options, &Progress::none())
 }
 
 /// The arrangement of operands in double precision, or in single.
@@ -58,13 +67,17 @@ pub fn area(mesh: &TriMesh) -> f64 {
     corners.map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0).sum()
 }
 
-/// By how much a volume may change where vertices at contacts are moved: two steps each, doubled in each round; a step is 2⁻²⁹ of the largest
-/// coordinate, or 2⁻²³ of it in single precision.
+/// By how much a volume may change where vertices at contacts are moved, and where what crossed once it was rounded was mended: some steps
+/// more in each round; a step is at most 2⁻²⁸ of the largest coordinate, or 2⁻²² of it in single precision.
 pub fn moved_volume(made: &Arranged, single: bool) -> f64 {
     let largest = made.mesh.positions.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
     let step = largest * if single { 2f64.powi(-22) } else { 2f64.powi(-28) };
-    let reach = 2.0 * 2f64.powi(made.report.rounds as i32);
-    if made.report.separated == 0 { 0.0 } else { area(&made.mesh) * reach * step }
+    let steps = match (made.report.separated, made.report.rounds) {
+        (0, 0) => 0.0,
+        (_, 0) => 2.0,
+        (_, rounds) => 16.0 * 2f64.powi(rounds as i32),
+    };
+    area(&made.mesh) * steps * step
 }
 
 pub fn inside_out(mut mesh: TriMesh) -> TriMesh {
