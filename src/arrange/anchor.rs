@@ -3,12 +3,14 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::cells::Cell;
 use super::facets::{Cover, Facets};
 use super::point::Exact;
 use super::refine::{Piece, Refined};
 use super::wide::Wide;
 use crate::progress::{Progress, Stopped};
+
+/// The number of a cell.
+pub(crate) type Cell = u32;
 
 /// A triangle above a point.
 #[derive(Debug, Clone, Copy)]

@@ -4,14 +4,11 @@ use std::cmp::Ordering;
 
 use rustc_hash::FxHashMap;
 
-use super::anchor::{Anchor, Crossed, anchors};
+use super::anchor::{Anchor, Cell, Crossed, anchors};
 use super::plane::normal;
 use super::refine::Refined;
 use crate::mesh::edges::{Edge, Edges, Union};
 use crate::progress::{Progress, Stopped};
-
-/// The number of a cell.
-pub(crate) type Cell = u32;
 
 /// The cells of a refined surface and what is needed to know how often triangles wind around each.
 #[derive(Debug)]

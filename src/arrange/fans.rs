@@ -126,14 +126,12 @@ impl Draft {
                 continue;
             }
             for (n, part) in parts.iter().enumerate() {
-                let outward = part.iter().map(|&(_, _, corner)| self.weighted_normal(corner)).sum::<DVec3>();
                 let others = parts.iter().enumerate().filter(|&(m, _)| m != n);
                 let solid: Vec<bool> = others.map(|(_, other)| self.is_behind(part, self.middle(other[0].2))).collect();
                 // Away from the other fans: into the solid's tip, or out of the void's; a fan between others stays.
                 let away = match (solid.contains(&true), solid.contains(&false)) {
-                    (false, _) => -outward,
-                    (true, false) => outward,
                     (true, true) => DVec3::ZERO,
+                    (behind, _) => self.away(part, behind),
                 };
                 let place = self.beside(self.point(same[0].0), away.normalize_or_zero(), fine, factor);
                 moves.push((part.iter().map(|entry| entry.2).collect(), place));
@@ -142,6 +140,25 @@ impl Draft {
         for (corners, place) in moves {
             let v = self.add(place, Kind::Moved);
             corners.iter().for_each(|&corner| self.triangles[corner as usize / 3][corner as usize % 3] = v);
+        }
+    }
+
+    /// A direction in which a fan of triangles leaves what lies behind it, where the solid is, or in front of it.
+    fn away(&self, fan: &[(u32, u32, u32)], behind: bool) -> DVec3 {
+        let angle = |corner: u32| {
+            let [u, v] = self.legs(corner);
+            u.dot(v).clamp(-1.0, 1.0).acos()
+        };
+        let corners = || fan.iter().map(|entry| entry.2);
+        let middle: DVec3 = corners().map(|corner| self.middle(corner) * angle(corner)).sum();
+        let outward: DVec3 = corners().map(|corner| self.weighted_normal(corner)).sum();
+        // The normal of a narrow tip may lie across it; its middle does not.
+        let is_tip = middle.length() > 0.5 * corners().map(angle).sum::<f64>();
+        match is_tip {
+            true if behind == self.is_behind(fan, middle) => -middle,
+            true => middle,
+            false if behind => outward,
+            false => -outward,
         }
     }
 

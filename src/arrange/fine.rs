@@ -2,8 +2,14 @@
 
 use glam::DVec3;
 
-use super::point::BITS;
 use crate::mesh::TriMesh;
+
+/// Bits of a coordinate on the fine lattice.
+pub(crate) const BITS: u32 = 30;
+
+/// How far the approximate coordinates of a point may be off, steps of the fine lattice. The quotient of two numbers that are exact to
+/// 2⁻⁵² each is off by less than 2⁻⁵⁰ of itself, and no coordinate exceeds 2³⁰.
+pub(crate) const ERROR: f64 = 1.0 / (1 << 20) as f64;
 
 /// A lattice around the origin of model space.
 ///

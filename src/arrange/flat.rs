@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use super::point::{ERROR, Points};
+use super::fine::ERROR;
+use super::point::Points;
 use super::wide::{Kept, Wide};
 
 /// A point by its exact coordinates across an axis.

@@ -27,6 +27,7 @@ mod meet;
 mod merge;
 mod near;
 mod needles;
+mod options;
 mod planar;
 mod plane;
 mod point;
@@ -39,5 +40,6 @@ mod turn;
 mod wide;
 
 pub use error::{ArrangeError, Opening};
+pub use options::ArrangeOptions;
 pub use report::ArrangeReport;
-pub use solve::{ArrangeOptions, Arranged, Cut, arrange, crossing_curves, cut};
+pub use solve::{Arranged, Cut, arrange, crossing_curves, cut};

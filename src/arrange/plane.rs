@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use super::point::{ERROR, Exact};
-use super::wide::Wide;
+use super::fine::ERROR;
 
 /// The points p with `normal` · p = `offset`. At 28 bits a coordinate, normals have 59 bits and offsets 90.
 #[derive(Debug, Clone, Copy)]
@@ -58,13 +57,6 @@ impl Plane {
             true => sum.signum() as i32,
             false => 0,
         }
-    }
-
-    /// The exact side of a point.
-    pub(crate) fn side(&self, p: &Exact) -> i32 {
-        let terms = (0..3).map(|k| Wide::from(self.normal[k]).mul(&p.at[k].wide()));
-        let sum = terms.fold(Wide::ZERO, |sum, term| sum.add(&term));
-        sum.sub(&Wide::from(self.offset).mul(&p.w.wide())).sign()
     }
 }
 

@@ -5,15 +5,9 @@ use std::cmp::Ordering;
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
+use super::fine::ERROR;
 use super::plane::Plane;
 use super::wide::{Kept, PRIME, Wide, inverse, times};
-
-/// Bits of a coordinate on the fine lattice.
-pub(crate) const BITS: u32 = 30;
-
-/// How far the approximate coordinates of a point may be off, steps of the fine lattice. The quotient of two numbers that are exact to
-/// 2⁻⁵² each is off by less than 2⁻⁵⁰ of itself, and no coordinate exceeds 2³⁰.
-pub(crate) const ERROR: f64 = 1.0 / (1 << 20) as f64;
 
 /// A point by its exact coordinates: those of `at`, divided by `w`, which is positive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,6 +72,13 @@ impl Exact {
     fn equals(&self, other: &Self) -> bool {
         let (w, v) = (self.w.wide(), other.w.wide());
         (0..3).all(|k| self.at[k].wide().mul(&v).compare(&other.at[k].wide().mul(&w)).is_eq())
+    }
+
+    /// The exact side of a plane that the point lies on: 1 where its normal points to, 0 on it.
+    pub(crate) fn side_of(&self, plane: &Plane) -> i32 {
+        let terms = (0..3).map(|k| Wide::from(plane.normal[k]).mul(&self.at[k].wide()));
+        let sum = terms.fold(Wide::ZERO, |sum, term| sum.add(&term));
+        sum.sub(&Wide::from(plane.offset).mul(&self.w.wide())).sign()
     }
 
     /// How the coordinates along an axis compare.
@@ -225,7 +226,7 @@ impl Points {
         }
         match self.vertices.get(point as usize) {
             Some(&at) => plane.value(at).signum() as i32,
-            None => plane.side(&self.made[point as usize - self.vertices.len()]),
+            None => self.made[point as usize - self.vertices.len()].side_of(plane),
         }
     }
 }

@@ -6,7 +6,6 @@
 
 use glam::DVec3;
 
-use super::ArrangeOptions;
 use super::cells::{Cells, Owner, gaps};
 use super::draft::{Draft, Kind, Rounding};
 use super::extract::{Face, extract};
@@ -14,6 +13,7 @@ use super::facets::Facets;
 use super::fine::Fine;
 use super::merge::merge;
 use super::near::Near;
+use super::options::ArrangeOptions;
 use super::refine::{Refined, refine};
 use super::solve;
 use crate::mesh::{TriMesh, flat_triangles, intersections_with, self_intersections};

@@ -11,27 +11,11 @@ use super::merge::merge;
 use super::refine::{Refined, refine};
 use super::round::{Rounded, Surface, round, touching};
 use super::turn::Turned;
-use super::{ArrangeError, ArrangeReport, Opening};
+use super::{ArrangeError, ArrangeOptions, ArrangeReport, Opening};
 use crate::ldi::{Expression, Operands};
 use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
 use crate::progress::Progress;
-
-/// Options of [`arrange`].
-#[derive(Debug, Clone, Copy)]
-pub struct ArrangeOptions<'a> {
-    /// The result in terms of the operands.
-    pub expression: &'a Expression,
-    /// Whether shells that face the wrong way are turned over.
-    pub orient: OrientMode,
-    /// Whether all coordinates of the result are to be `f32` numbers.
-    pub single: bool,
-    /// For each triangle whether it may touch another one, if that has been found out for the coordinates of the result (see
-    /// [`contacts`](crate::shells::contacts)); empty: any may.
-    pub suspects: &'a [bool],
-    /// A number for each triangle, or none at all: triangles with different numbers are not merged where they lie in one plane.
-    pub classes: &'a [u32],
-}
 
 /// An exact result, with rounded vertices.
 #[derive(Debug, Clone, Default)]

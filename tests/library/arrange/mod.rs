@@ -1,0 +1,10 @@
+//! The exact arrangement against oracles that share nothing with it: unit cubes that are counted, volumes that add up, and winding numbers along
+//! rays in floating point.
+
+mod boxes;
+mod chain;
+mod order;
+mod referee;
+mod soups;
+pub mod support;
+mod touching;
