@@ -117,18 +117,12 @@ impl Task<'_> {
         if let Exact::Done(draft) = exact {
             return Ok(account::finished(draft, &apart, stages));
         }
-        if let Exact::Open(closed) = exact {
+        if let Exact::Open { closed, crosses } = exact {
             if meshes.len() > 1 {
                 if let Some(draft) = self.sealed(&closed, &mut stages)? {
                     return Ok(account::finished(draft, &apart, stages));
                 }
-            } else if let Some(mut draft) = self.cut_first(&mut stages)? {
-                for (own, given) in draft.report.orient.iter_mut().zip(&rest.reports) {
-                    // What was dropped is counted in the operand's own triangles, not in pieces.
-                    own.degenerate_dropped = given.degenerate_dropped;
-                    own.duplicates_dropped = given.duplicates_dropped;
-                    own.both_sided = given.both_sided;
-                }
+            } else if crosses && let Some(mut draft) = self.cut_first(&rest, &mut stages)? {
                 draft.report.stages = stages.finish();
                 return Ok(draft);
             }

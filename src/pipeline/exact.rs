@@ -19,8 +19,13 @@ use crate::survey::Soup;
 pub(super) enum Exact {
     /// The result.
     Done(Draft),
-    /// There is none, because operands have holes: for each whether it is closed.
-    Open(Vec<bool>),
+    /// There is none, because operands have holes.
+    Open {
+        /// For each operand whether it is closed.
+        closed: Vec<bool>,
+        /// Whether triangles cross each other besides.
+        crosses: bool,
+    },
     /// It is not to be gone, or leads nowhere.
     None,
 }
@@ -101,7 +106,7 @@ impl Job<'_> {
         }
         match refused {
             refused if method == Method::Exact => Err(BooleanError::NotExact(refused)),
-            ArrangeError::Open { closed, .. } => Ok(Exact::Open(closed)),
+            ArrangeError::Open { closed, cut, .. } => Ok(Exact::Open { closed, crosses: cut > 0 }),
             _ => Ok(Exact::None),
         }
     }
