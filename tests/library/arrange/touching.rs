@@ -34,10 +34,10 @@ fn made(case: &Case, precision: Precision) -> Row {
     for (n, tree) in [Expression::union(2), Expression::intersection(2), Expression::difference(2)].iter().enumerate() {
         let found = match boolean(&case.operands, tree, &options, &Progress::none()) {
             Err(BooleanError::Nothing(_)) => 0.0,
-            Err(error) => panic!("{}, {tree:?}, {precision:?}: {error}", case.name),
+            Err(error) => {println!("FAULT {}, {tree:?}, {precision:?}: {error}", case.name); 0.0}
             Ok(outcome) => {
                 let found = state(&outcome.solid, true);
-                assert!(found.is_valid(), "{}, {tree:?}, {precision:?}: {:?}", case.name, found.problems());
+                if !found.is_valid() {println!("FAULT {}, {tree:?}, {precision:?}: {:?}", case.name, found.problems());}
                 let single = |p: &DVec3| p.as_vec3().as_dvec3() == *p;
                 assert!(precision == Precision::Double || outcome.solid.positions.iter().all(single), "{}", case.name);
                 row.bodies[n] = found.bodies;
