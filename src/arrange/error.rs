@@ -29,6 +29,8 @@ pub enum ArrangeError {
         first: Opening,
         /// For each operand whether it is closed.
         closed: Vec<bool>,
+        /// How many triangles were cut, because they touch others.
+        cut: usize,
     },
     /// Triangles touch in more places than there may be.
     #[error("triangles touch in {pairs} pairs, more than the {most} that are cut exactly")]

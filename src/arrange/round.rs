@@ -15,7 +15,6 @@ use super::merge::merge;
 use super::near::Near;
 use super::options::ArrangeOptions;
 use super::refine::{Refined, refine};
-use super::solve;
 use crate::mesh::{TriMesh, flat_triangles, intersections_with, self_intersections};
 use crate::progress::{Progress, Stopped};
 
@@ -103,7 +102,7 @@ pub(crate) fn round(surface: &Surface<'_>, progress: &Progress) -> Result<Option
     for way in &WAYS {
         let Some(mut rounded) = way.go(surface, progress)? else { continue };
         let corners = (0..rounded.mesh.triangles.len()).map(|t| rounded.mesh.corners(t));
-        rounded.volume_error = (solve::volume(corners) / volume - 1.0).abs();
+        rounded.volume_error = (self::volume(corners) / volume - 1.0).abs();
         // Where nothing crossed, all ways are one.
         let is_close = rounded.volume_error <= CLOSE || rounded.rounds == 0;
         if best.as_ref().is_none_or(|best| rounded.volume_error < best.volume_error) {
@@ -240,4 +239,24 @@ pub(crate) fn touching(
     let triangles = list.iter().map(|&f| facets.corners[f as usize]).collect();
     let pairs = self_intersections(&TriMesh { positions, triangles }, progress)?;
     Ok(pairs.into_iter().map(|pair| pair.map(|n| list[n as usize])).collect())
+}
+
+impl Surface<'_> {
+    /// The volume before rounding, cubic model units, to about 1e-12 of it.
+    pub(super) fn volume(&self) -> f64 {
+        let corner = |p: u32| match self.refined.points.vertex(p) {
+            Some(_) => match self.kinds[p as usize] {
+                Kind::Own(v) => self.input[v as usize],
+                _ => self.refined.points.approximate(p) * self.fine.step,
+            },
+            None => self.refined.points.approximate(p) * self.fine.step,
+        };
+        volume(self.faces.iter().map(|face: &Face| face.corners.map(corner)))
+    }
+}
+
+/// The signed volume that triangles enclose.
+pub(super) fn volume(triangles: impl Iterator<Item = [DVec3; 3]> + Clone) -> f64 {
+    let Some([origin, ..]) = triangles.clone().next() else { return 0.0 };
+    triangles.map(|corners| corners.map(|p| p - origin)).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::cells::{Cells, Gap, gaps};
 use super::draft::Kind;
-use super::extract::{Face, extract};
+use super::extract::extract;
 use super::facets::Facets;
 use super::fine::Fine;
 use super::merge::merge;
@@ -131,7 +131,7 @@ fn opened(refined: &Refined, open: &[Gap], fine: &Fine, operands: usize) -> Arra
     let ends = |gap: &Gap| gap.ends.map(|p| (refined.points.approximate(p) * fine.step).to_array());
     let first = open.first().map(|gap| Opening { operand: gap.operand as usize, ends: ends(gap) });
     let first = first.unwrap_or(Opening { operand: 0, ends: [[0.0; 3]; 2] });
-    ArrangeError::Open { edges: open.len(), first, closed }
+    ArrangeError::Open { edges: open.len(), first, closed, cut: refined.cut() }
 }
 
 /// For each cell whether it is inside of the result.
@@ -188,24 +188,4 @@ pub fn crossing_curves(mesh: &TriMesh, progress: &Progress) -> Result<Vec<[DVec3
     let (refined, _, _) = refined(mesh, &fine, &[], progress)?;
     let point = |p: u32| refined.points.approximate(p) * fine.step;
     Ok(refined.curves.iter().map(|curve| curve.map(point)).collect())
-}
-
-impl Surface<'_> {
-    /// The volume before rounding, cubic model units, to about 1e-12 of it.
-    pub(super) fn volume(&self) -> f64 {
-        let corner = |p: u32| match self.refined.points.vertex(p) {
-            Some(_) => match self.kinds[p as usize] {
-                Kind::Own(v) => self.input[v as usize],
-                _ => self.refined.points.approximate(p) * self.fine.step,
-            },
-            None => self.refined.points.approximate(p) * self.fine.step,
-        };
-        volume(self.faces.iter().map(|face: &Face| face.corners.map(corner)))
-    }
-}
-
-/// The signed volume that triangles enclose.
-pub(super) fn volume(triangles: impl Iterator<Item = [DVec3; 3]> + Clone) -> f64 {
-    let Some([origin, ..]) = triangles.clone().next() else { return 0.0 };
-    triangles.map(|corners| corners.map(|p| p - origin)).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }

@@ -18,6 +18,7 @@ pub fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
     add(sum(|o| o.both_sided), "triangle", "present in both directions counted once");
     add(sum(|o| o.flipped_in_patches), "triangle", "turned over to agree with the neighbours");
     add(sum(|o| o.flipped_patches), "patch", "turned over as a whole");
+    add(pipeline.cut, "triangle", "cut along others first, so that what they cross in stays exact");
     if pipeline.ldi.silent_rays > 0 {
         let share = words::percent(pipeline.ldi.silent_rays, pipeline.ldi.rays);
         parts.push(format!("{share} of the test rays met a hole or a crack, where those in other directions decided"));

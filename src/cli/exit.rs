@@ -168,7 +168,9 @@ impl Failure {
 
 /// Why there is no exact result, for operands that go by `labels`.
 fn not_exact(why: &ArrangeError, labels: &[String]) -> String {
-    let ArrangeError::Open { edges, first, closed } = why else { return format!("there is no exact result: {why}") };
+    let ArrangeError::Open { edges, first, closed, .. } = why else {
+        return format!("there is no exact result: {why}");
+    };
     let label = |operand: usize| labels.get(operand).map_or("the input", String::as_str).to_string();
     let open: Vec<String> = (0..closed.len()).filter(|&n| !closed[n]).map(label).collect();
     let place = |p: [f64; 3]| p.map(words::number).join(" ");

@@ -57,7 +57,7 @@ pub struct SolidArgs {
     /// Leave out closed surfaces that enclose less (8h3 for cubic voxels, 0.5mm3)
     #[arg(long, value_name = "VOLUME")]
     pub drop_smaller: Option<Volume>,
-    /// Write the result to this file, coloured by what is kept, rebuilt and made up
+    /// Write the result to this file, coloured by what is kept, cut, rebuilt and made up
     #[arg(long, value_name = "FILE.ply")]
     pub map: Option<PathBuf>,
     /// Refuse to start when more memory would be needed (500M, 2G) [default: what is free]

@@ -7,6 +7,7 @@ use super::order::Ordered;
 use super::rebuild::Job;
 use super::stages::Stages;
 use super::{BooleanError, Draft, Operand, Options, Outcome, account, plan, sizing};
+use crate::arrange::ArrangeError;
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stage};
@@ -69,9 +70,17 @@ fn evaluate(
     plan::check_standing(&meshes, options.max_memory)?;
 
     let task = Task { meshes: &meshes, classes: &classes, expression, options, h, progress };
-    let mut draft = task.draft().map_err(|error| frame.error(error))?;
+    let mut draft = task.draft().map_err(|error| moved(error, &frame))?;
     draft.report.inside = options.inside;
     Ok(draft.global(&frame).counted(&given).judged(operands, progress)?)
+}
+
+/// An error whose place is where the operands are.
+fn moved(mut error: BooleanError, frame: &Frame) -> BooleanError {
+    if let BooleanError::NotExact(ArrangeError::Open { first, .. }) = &mut error {
+        first.ends.iter_mut().for_each(|end| frame.place(end));
+    }
+    error
 }
 
 /// A boolean of operands near the origin.
@@ -108,18 +117,12 @@ impl Task<'_> {
         if let Exact::Done(draft) = exact {
             return Ok(account::finished(draft, &apart, stages));
         }
-        if let Exact::Open(closed) = exact {
+        if let Exact::Open { closed, crosses } = exact {
             if meshes.len() > 1 {
                 if let Some(draft) = self.sealed(&closed, &mut stages)? {
                     return Ok(account::finished(draft, &apart, stages));
                 }
-            } else if let Some(mut draft) = self.cut_first(&mut stages)? {
-                for (own, given) in draft.report.orient.iter_mut().zip(&rest.reports) {
-                    // What was dropped is counted in the operand's own triangles, not in pieces.
-                    own.degenerate_dropped = given.degenerate_dropped;
-                    own.duplicates_dropped = given.duplicates_dropped;
-                    own.both_sided = given.both_sided;
-                }
+            } else if crosses && let Some(mut draft) = self.cut_first(&rest, &mut stages)? {
                 draft.report.stages = stages.finish();
                 return Ok(draft);
             }

@@ -71,8 +71,9 @@ impl Report {
         self.crumbs = self.crumbs.and(next.crumbs);
         if next.topology.is_some() {
             // The operation ended in a boolean, whose rays saw all of the result.
-            let Self { orient, crumbs, stages, warnings, triangles, .. } = self;
-            return Self { orient, crumbs, stages, warnings, triangles, ..next };
+            let Self { orient, crumbs, stages, warnings, triangles, cut, .. } = self;
+            let exact = next.exact.or(self.exact);
+            return Self { orient, crumbs, stages, warnings, triangles, cut, exact, ..next };
         }
         if next.morphology.is_some() {
             self.fit = next.fit;

@@ -7,6 +7,7 @@ use super::rebuild::Job;
 use super::stages::Stages;
 use super::{BooleanError, Draft, Method, NothingEnclosed, Report, TriangleSource};
 use crate::arrange::{ArrangeError, ArrangeOptions, Arranged, arrange};
+use crate::fit::{SimpleSource, simplified_source};
 use crate::lattice::Lattice;
 use crate::ldi::Operands;
 use crate::mesh::TriMesh;
@@ -18,8 +19,13 @@ use crate::survey::Soup;
 pub(super) enum Exact {
     /// The result.
     Done(Draft),
-    /// There is none, because operands have holes: for each whether it is closed.
-    Open(Vec<bool>),
+    /// There is none, because operands have holes.
+    Open {
+        /// For each operand whether it is closed.
+        closed: Vec<bool>,
+        /// Whether triangles cross each other besides.
+        crosses: bool,
+    },
     /// It is not to be gone, or leads nowhere.
     None,
 }
@@ -85,7 +91,7 @@ impl Job<'_> {
         }
         stages.begin(Stage::Arrange)?;
         let mut refused = match self.arranged(&Pile::given(operands, apart)) {
-            Ok(draft) => return self.joined(draft, standing),
+            Ok(draft) => return self.joined(self.simplified(draft)?, standing),
             Err(ArrangeError::Stopped(stopped)) => return Err(stopped.into()),
             Err(error) => error,
         };
@@ -93,14 +99,14 @@ impl Job<'_> {
         let changed = rest.reports.iter().any(|r| r.flipped_in_patches + r.duplicates_dropped + r.both_sided > 0);
         if changed && matches!(refused, ArrangeError::Open { .. }) {
             refused = match self.arranged(&Pile::oriented(rest)) {
-                Ok(draft) => return self.joined(draft, standing),
+                Ok(draft) => return self.joined(self.simplified(draft)?, standing),
                 Err(ArrangeError::Stopped(stopped)) => return Err(stopped.into()),
                 Err(error) => error,
             };
         }
         match refused {
             refused if method == Method::Exact => Err(BooleanError::NotExact(refused)),
-            ArrangeError::Open { closed, .. } => Ok(Exact::Open(closed)),
+            ArrangeError::Open { closed, cut, .. } => Ok(Exact::Open { closed, crosses: cut > 0 }),
             _ => Ok(Exact::None),
         }
     }
@@ -108,14 +114,7 @@ impl Job<'_> {
     /// The exact result of closed operands.
     pub(super) fn arranged(&self, pile: &Pile) -> Result<Draft, ArrangeError> {
         let Self { expression, options, progress, .. } = *self;
-        let class = |source: &TriangleSource| match *source {
-            TriangleSource::Operand { operand, triangle } => {
-                self.classes.get(operand as usize).and_then(|list| list.get(triangle as usize)).copied().unwrap_or(0)
-            }
-            TriangleSource::Closed => 0,
-        };
-        let any = self.classes.iter().any(|list| !list.is_empty());
-        let classes: Vec<u32> = if any { pile.sources.iter().map(class).collect() } else { Vec::new() };
+        let classes = self.classes_of(&pile.sources);
         let asked = ArrangeOptions {
             expression,
             orient: options.orient,
@@ -129,6 +128,31 @@ impl Job<'_> {
         let report = Report { voxel: self.h, exact: Some(report), ..Report::default() };
         let sources = sources.into_iter().map(|t| pile.sources[t as usize]).collect();
         Ok(Draft { mesh, sources, lattice, report })
+    }
+
+    /// The numbers of the operands' triangles that others lie on; nothing where there are none.
+    fn classes_of(&self, sources: &[TriangleSource]) -> Vec<u32> {
+        let class = |source: &TriangleSource| match *source {
+            TriangleSource::Operand { operand, triangle } => {
+                self.classes.get(operand as usize).and_then(|list| list.get(triangle as usize)).copied().unwrap_or(0)
+            }
+            TriangleSource::Closed => 0,
+        };
+        let any = self.classes.iter().any(|list| !list.is_empty());
+        if any { sources.iter().map(class).collect() } else { Vec::new() }
+    }
+
+    /// The same with flat parts simplified, where that is asked for of what is right already.
+    fn simplified(&self, draft: Draft) -> Result<Draft, BooleanError> {
+        let Some(fit) = self.options.fit.filter(|fit| fit.simplify_kept > 0.0) else { return Ok(draft) };
+        let classes = self.classes_of(&draft.sources);
+        match simplified_source(&draft.mesh, classes, self.h, &fit, self.progress)? {
+            None => Ok(draft),
+            Some(SimpleSource { mesh, of }) => {
+                let source = |t: Option<u32>| t.map_or(TriangleSource::Closed, |t| draft.sources[t as usize]);
+                Ok(Draft { mesh, sources: of.into_iter().map(source).collect(), ..draft })
+            }
+        }
     }
 
     /// What stands with what was cut beside it, unless rounding made the two touch.

@@ -4,8 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 
-use super::{BooleanError, Precision, Report, SurfaceOptions};
-use crate::arrange::ArrangeError;
+use super::{Precision, Report, SurfaceOptions};
 use crate::field::{Placement, Shared, placed};
 use crate::lattice::Lattice;
 use crate::mesh::{Bounds, TriMesh};
@@ -104,14 +103,6 @@ impl Frame {
     /// Moves a place to where the operands are.
     pub(super) fn place(&self, p: &mut [f64; 3]) {
         *p = (DVec3::from_array(*p) + self.origin).to_array();
-    }
-
-    /// Moves the place that an error names to where the operands are.
-    pub(super) fn error(&self, mut error: BooleanError) -> BooleanError {
-        if let BooleanError::NotExact(ArrangeError::Open { first, .. }) = &mut error {
-            first.ends.iter_mut().for_each(|end| self.place(end));
-        }
-        error
     }
 
     /// Moves the places of a report to where the operands are.

@@ -16,6 +16,7 @@ mod crumbs;
 mod distance;
 mod error;
 mod exact;
+mod exact_plan;
 mod field;
 mod frame;
 mod hollow;

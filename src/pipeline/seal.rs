@@ -9,11 +9,12 @@ use crate::arrange::{ArrangeError, cut};
 use crate::lattice::Lattice;
 use crate::ldi::Expression;
 use crate::progress::Stage;
+use crate::survey::Soup;
 
 impl Task<'_> {
     /// The repair of an operand with holes that was cut first where it crosses itself: then its crossing curves are edges, and what lies on either
-    /// side of them is judged by itself. `None` where nothing crosses, or where nothing is enclosed then.
-    pub(super) fn cut_first(&self, stages: &mut Stages<'_>) -> Result<Option<Draft>, BooleanError> {
+    /// side of them is judged by itself. `given`: the operand as it was cleaned. `None` where nothing crosses, or where nothing is enclosed then.
+    pub(super) fn cut_first(&self, given: &Soup, stages: &mut Stages<'_>) -> Result<Option<Draft>, BooleanError> {
         let Self { meshes, classes, expression, options, h, progress } = *self;
         let single = options.precision == Precision::Single;
         let pieces = match cut(meshes[0], single, progress) {
@@ -40,6 +41,12 @@ impl Task<'_> {
             if let TriangleSource::Operand { triangle, .. } = source {
                 *triangle = pieces.sources[*triangle as usize];
             }
+        }
+        for (own, given) in draft.report.orient.iter_mut().zip(&given.reports) {
+            // What was dropped is counted in the operand's own triangles, not in pieces.
+            own.degenerate_dropped = given.degenerate_dropped;
+            own.duplicates_dropped = given.duplicates_dropped;
+            own.both_sided = given.both_sided;
         }
         stages.took(&draft.report.stages);
         draft.report.cut = pieces.cut;
