@@ -4,7 +4,7 @@ use super::Plan;
 
 /// Bytes at the peak of what is cut exactly: per triangle of the operands, and besides per triangle that touches others. Of the closed meshes of the data
 /// set and pairs made of them none needs more than a fifth more, and those of which few triangles cross need a fifth less.
-const EXACT_BYTES: [f64; 3] = [12e6, 700.0, 4600.0];
+const EXACT_BYTES: [f64; 3] = [13e6, 650.0, 4600.0];
 /// Seconds on two cores, to start, and per triangle of either sort. The same runs take between half and one and a half times of that.
 const EXACT_SECONDS: [f64; 3] = [0.008, 6e-6, 120e-6];
 /// Triangles of the result besides those of the input, per triangle that touches others.

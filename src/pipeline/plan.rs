@@ -100,6 +100,8 @@ const OFFSET_MARGIN: f64 = 4.0;
 /// Bytes per triangle of shells that stay as they are, at the peak: it is there in the file, in the soup, in the trees of the searches for
 /// contacts, and in the file that is written.
 const STANDING_BYTES: f64 = 600.0;
+/// And those that each takes at least, whatever the format.
+const LEAST_BYTES: f64 = 500.0;
 
 /// Seconds on two cores per h² of surface that is built anew, fit included.
 const SECONDS_PER_CELL: f64 = 22e-6;
@@ -186,7 +188,7 @@ pub(super) fn of_offsets(mesh: &TriMesh, lattice: &Lattice, options: &SurfaceOpt
 impl Plan {
     /// For shells that stand as they are, without a lattice.
     pub(super) fn of_standing(h: f64, triangles: usize) -> Self {
-        let memory = (BASE_BYTES + STANDING_BYTES * triangles as f64) as u64;
+        let memory = |each: f64| (BASE_BYTES + each * triangles as f64) as u64;
         Self {
             voxel: h,
             dims: [0; 3],
@@ -194,8 +196,8 @@ impl Plan {
             touching: 0,
             voxels_near_surface: 0,
             triangles: triangles as u64,
-            memory,
-            least_memory: memory,
+            memory: memory(STANDING_BYTES),
+            least_memory: memory(LEAST_BYTES),
             seconds: STANDING_SECONDS[0] + STANDING_SECONDS[1] * triangles as f64,
         }
     }
@@ -204,7 +206,7 @@ impl Plan {
 /// An error when shells that stand as they are would need more memory than allowed.
 pub(super) fn check_standing(operands: &[&TriMesh], max_memory: Option<u64>) -> Result<(), LimitError> {
     let triangles = operands.iter().map(|operand| operand.triangles.len()).sum();
-    let needed = Plan::of_standing(0.0, triangles).memory;
+    let needed = Plan::of_standing(0.0, triangles).least_memory;
     match max_memory {
         Some(allowed) if needed > allowed => Err(LimitError::Memory { needed, allowed, voxel_that_fits: None }),
         _ => Ok(()),

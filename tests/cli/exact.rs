@@ -115,6 +115,21 @@ fn what_became_of_the_shells_is_told() {
 }
 
 #[test]
+fn what_is_simplified_by_hand_is_what_was_cut_too() {
+    let folder = folder();
+    put(&folder, "box.off", &[cube([0.0; 3], 12.0)]);
+    let triangles = |flags: &str| {
+        let line = format!("union testdata/torus.ply OUT/box.off -o OUT/a.off --force --json {flags}");
+        let json = run_in(&folder, &line).exits(0).json();
+        assert!(json["result"]["pipeline"]["exact"]["cut"].as_u64() > Some(0), "{json}");
+        assert!(volume(&folder, "a.off") > 1728.0);
+        json["result"]["output"]["validity"]["triangles"].as_u64().expect("a count")
+    };
+    let (all, fewer) = (triangles(""), triangles("--simplify 1%"));
+    assert!(4 * fewer < 3 * all, "{all} and {fewer}");
+}
+
+#[test]
 fn plans_know_the_way_and_refuse_nothing_that_fits() {
     let folder = folder();
     let plan = |flags: &str| run_in(&folder, &format!("repair {BOXES} --plan {flags}"));
