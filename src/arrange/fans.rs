@@ -108,8 +108,11 @@ impl Draft {
     /// A place some steps away from a point in a direction.
     fn beside(&self, p: DVec3, inward: DVec3, fine: &Fine, factor: f64) -> [i32; 3] {
         let step = DVec3::from_array(p.abs().to_array().map(|size| fine.step_at(size)));
-        // So far that rounding does not lose it.
-        let share = (inward.abs() / step).max_element().max(1e-9);
+        // So far that rounding loses it along no axis that matters: near zero, where steps are short, a move may be too short for the others.
+        let matters = inward.abs().max_element() / 4.0;
+        let share = |k: usize| Some(inward[k].abs() / step[k]).filter(|_| inward[k].abs() > matters);
+        let share = (0..3).filter_map(share).fold(f64::INFINITY, f64::min);
+        let share = if share.is_finite() { share } else { 1.0 };
         fine.settled(p + inward / share * (STEPS * factor))
     }
 

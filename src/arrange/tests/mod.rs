@@ -68,6 +68,7 @@ pub(super) fn coordinate() -> impl Strategy<Value = i32> {
         1 => END - 2..=END,
         2 => -3..=3,
     ]
+    .boxed()
 }
 
 pub(super) fn place() -> impl Strategy<Value = [i32; 3]> {

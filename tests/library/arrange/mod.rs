@@ -2,9 +2,9 @@
 //! rays in floating point.
 
 mod boxes;
-pub mod chain;
+mod chain;
 mod order;
 mod referee;
 mod soups;
-pub mod support;
+mod support;
 mod touching;

@@ -5,10 +5,14 @@ use super::support::{
     Shell, arranged_by, asked, cases, expression, inside_out, piled, result, turned_shell, volume, whole_shell,
 };
 use crate::common::exact::spread;
+use crate::common::proofs::state;
 use glam::DVec3;
 use meshwright::arrange::ArrangeOptions;
 use meshwright::ldi::{Expression, Inside};
 use meshwright::mesh::TriMesh;
+use meshwright::orient::OrientMode;
+use meshwright::pipeline::{BooleanError, Method, Options, Precision, VoxelSize, boolean};
+use meshwright::progress::Progress;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 
@@ -30,16 +34,14 @@ fn meshes(soup: &[Vec<(Shell, bool)>]) -> Vec<TriMesh> {
 }
 
 /// Looks at points of space: inside of the result is what the expression says of the operands' winding numbers.
-fn check(soup: &[Vec<(Shell, bool)>], tree: &Expression, inside: Inside, single: bool) -> Result<(), TestCaseError> {
-    let operands = meshes(soup);
-    let (all, _) = piled(&operands);
-    prop_assume!(!all.triangles.is_empty());
-    let made = arranged_by(inside, &operands, &ArrangeOptions { single, ..asked(tree) });
-    let made = made.map_err(|error| TestCaseError::fail(format!("{error}")))?;
-    if !made.mesh.triangles.is_empty() {
-        let found = crate::common::proofs::state(&made.mesh, true);
-        prop_assert!(found.is_valid(), "{:?}, {:?}", found.problems(), made.report);
-    }
+fn look(
+    operands: &[TriMesh],
+    tree: &Expression,
+    inside: Inside,
+    result: &TriMesh,
+    single: bool,
+) -> Result<(), TestCaseError> {
+    let (all, _) = piled(operands);
     let bounds = all.bounds().expect("triangles");
     let room = bounds.size() * 0.1;
     let near = if single { 1e-5 } else { 1e-6 };
@@ -49,13 +51,53 @@ fn check(soup: &[Vec<(Shell, bool)>], tree: &Expression, inside: Inside, single:
             continue;
         }
         let numbers: Option<Vec<i32>> = operands.iter().map(|operand| winding(operand, p)).collect();
-        let (Some(numbers), Some(found)) = (numbers, winding(&made.mesh, p)) else { continue };
+        let (Some(numbers), Some(found)) = (numbers, winding(result, p)) else { continue };
         let held: Vec<bool> = numbers.iter().map(|&w| inside.holds(w)).collect();
         prop_assert_eq!(found, i32::from(tree.evaluate(&held)), "at {}, operands wind {:?}", p, numbers);
         looked += 1;
     }
     prop_assert!(looked > 20, "{} points", looked);
     Ok(())
+}
+
+fn check(soup: &[Vec<(Shell, bool)>], tree: &Expression, inside: Inside, single: bool) -> Result<(), TestCaseError> {
+    let operands = meshes(soup);
+    prop_assume!(operands.iter().any(|mesh| !mesh.triangles.is_empty()));
+    let made = arranged_by(inside, &operands, &ArrangeOptions { single, ..asked(tree) });
+    let made = made.map_err(|error| TestCaseError::fail(format!("{error}")))?;
+    if !made.mesh.triangles.is_empty() {
+        let found = state(&made.mesh, true);
+        prop_assert!(found.is_valid(), "{:?}, {:?}", found.problems(), made.report);
+    }
+    look(&operands, tree, inside, &made.mesh, single)
+}
+
+/// The same by the whole pipeline, which leaves shells alone that touch nothing or are buried in others.
+fn check_pipeline(
+    soup: &[Vec<(Shell, bool)>],
+    tree: &Expression,
+    inside: Inside,
+    single: bool,
+) -> Result<(), TestCaseError> {
+    let operands = meshes(soup);
+    prop_assume!(operands.iter().all(|mesh| !mesh.triangles.is_empty()) && tree.operand_count() <= operands.len());
+    let precision = if single { Precision::Single } else { Precision::Double };
+    let options = Options {
+        method: Method::Exact,
+        orient: OrientMode::Keep,
+        inside,
+        precision,
+        ..Options::new(VoxelSize::Along(64))
+    };
+    match boolean(&operands, tree, &options, &Progress::none()) {
+        Err(BooleanError::Nothing(_)) => look(&operands, tree, inside, &TriMesh::default(), single),
+        Err(error) => Err(TestCaseError::fail(format!("{error}"))),
+        Ok(outcome) => {
+            let found = state(&outcome.solid, true);
+            prop_assert!(found.is_valid(), "{:?}", found.problems());
+            look(&operands, tree, inside, &outcome.solid, single)
+        }
+    }
 }
 
 fn rule() -> impl Strategy<Value = Inside> {
@@ -77,6 +119,20 @@ proptest! {
         soup in soup(whole_shell(4)), tree in expression(3), inside in rule(), single: bool,
     ) {
         check(&soup, &tree, inside, single)?;
+    }
+
+    #[test]
+    fn the_pipeline_says_the_same(
+        soup in soup(turned_shell()), tree in expression(3), inside in rule(), single: bool,
+    ) {
+        check_pipeline(&soup, &tree, inside, single)?;
+    }
+
+    #[test]
+    fn the_pipeline_says_the_same_where_nearly_everything_touches(
+        soup in soup(whole_shell(4)), tree in expression(3), inside in rule(), single: bool,
+    ) {
+        check_pipeline(&soup, &tree, inside, single)?;
     }
 
     #[test]
