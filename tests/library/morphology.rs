@@ -249,7 +249,9 @@ fn canals_are_listed_by_width_and_filled_one_by_one() {
     let (outcome, validity, report) = listed(&mesh, 0.2, Remove::These(vec![1]));
     assert_eq!((validity.genus, report.removed), (Some(2), vec![1]));
     let near = |mesh: &TriMesh, k: usize| -> Vec<[u64; 3]> {
-        let near = mesh.positions.iter().filter(|p| (**p - centre(k)).truncate().length() < 0.2);
+        // The wall of the bore: the faces that it opens in reach from one bore to the next, and are cut anew beside the one that goes.
+        let reach = 0.51 * diameters[k];
+        let near = mesh.positions.iter().filter(|p| (**p - centre(k)).truncate().length() < reach);
         let mut near: Vec<[u64; 3]> = near.map(|p| p.to_array().map(f64::to_bits)).collect();
         near.sort_unstable();
         near
