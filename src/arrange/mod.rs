@@ -5,14 +5,14 @@
 //!  (fine lattice)                  (planar)            (anchor)  (turn)                      (fans)
 //! ```
 //!
-//! All triangles come onto a lattice of 30 bits a coordinate ([`fine`]). Where two of them touch, what they have in common is a point or a
-//! segment, by signs of integers ([`meet`]). Triangles of one plane that touch are one sheet, which is triangulated once, with all that cuts
+//! All triangles come onto a lattice of 30 bits a coordinate (`fine`). Where two of them touch, what they have in common is a point or a
+//! segment, by signs of integers (`meet`). Triangles of one plane that touch are one sheet, which is triangulated once, with all that cuts
 //! it; so copies cannot disagree. Pieces then meet only at common edges and vertices, and around each edge they are sorted by the normals of
-//! their triangles: that joins the two sides of all pieces to [`cells`] of space. How often each operand winds around one cell of each connected
+//! their triangles: that joins the two sides of all pieces to `cells` of space. How often each operand winds around one cell of each connected
 //! part is counted along a ray, and from there through all others, piece by piece. The pieces between a cell inside of the result and one outside are
 //! its surface. Nothing up to here is approximate.
 //!
-//! The vertices are then rounded to numbers that a file holds, and what crosses for that is united with itself again ([`round`]).
+//! The vertices are then rounded to numbers that a file holds, and what crosses for that is united with itself again (`round`).
 
 mod anchor;
 mod cells;
