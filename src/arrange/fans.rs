@@ -95,12 +95,13 @@ impl Draft {
             let angle = angle + if n < count { 0.0 } else { std::f64::consts::TAU };
             if !up && n < count {
                 open.push((angle, half));
-            } else if up && !used[n % count] {
-                if let Some((from, other)) = open.pop() {
-                    used[n % count] = true;
-                    let inward = direction((from + angle) / 2.0);
-                    wedges.push(Wedge { ends: edge.ends, halves: [other, half], inward });
-                }
+            } else if up
+                && !used[n % count]
+                && let Some((from, other)) = open.pop()
+            {
+                used[n % count] = true;
+                let inward = direction((from + angle) / 2.0);
+                wedges.push(Wedge { ends: edge.ends, halves: [other, half], inward });
             }
         }
     }

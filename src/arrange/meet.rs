@@ -8,6 +8,7 @@ use super::point::{Exact, Made};
 
 /// A point that two facets have in common.
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::large_enum_variant, reason = "most are of the large sort, and an allocation each would cost more")]
 pub(crate) enum Place {
     /// A vertex by its number.
     Vertex(u32),
@@ -17,6 +18,7 @@ pub(crate) enum Place {
 
 /// What two facets have in common.
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::large_enum_variant, reason = "most are of the large sort, and an allocation each would cost more")]
 pub(crate) enum Meeting {
     Nothing,
     Point(Place),
@@ -68,6 +70,7 @@ fn along(planes: &[Plane; 2]) -> usize {
 }
 
 /// Where a facet's edges meet a plane.
+#[expect(clippy::large_enum_variant, reason = "most are of the large sort, and an allocation each would cost more")]
 enum Crossings {
     Nowhere,
     /// The facet lies in the plane.

@@ -42,6 +42,7 @@ pub(super) struct Sheet {
 }
 
 /// What is found in a sheet: a point on one or two of its segments.
+#[expect(clippy::large_enum_variant, reason = "most are of the large sort, and an allocation each would cost more")]
 enum Crossing {
     /// A point that has a number lies on a segment.
     On(usize, u32),

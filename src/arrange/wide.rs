@@ -175,7 +175,7 @@ impl Wide {
     }
 
     /// The number to within 2⁻⁵² of itself.
-    pub(crate) fn to_f64(&self) -> f64 {
+    pub(crate) fn to_f64(self) -> f64 {
         let top = self.len.saturating_sub(2);
         let size = self.in_use()[top..].iter().rev().fold(0.0, |sum, &limb| sum * 2f64.powi(64) + limb as f64);
         let size = size * 2f64.powi(64 * top as i32);

@@ -115,7 +115,7 @@ impl Task<'_> {
         }
         let exact = job.exact(meshes, (&rest, &apart), &standing, &mut stages)?;
         if let Exact::Done(draft) = exact {
-            return Ok(account::finished(draft, &apart, stages));
+            return Ok(account::finished(*draft, &apart, stages));
         }
         if let Exact::Open { closed, crosses } = exact {
             if meshes.len() > 1 {

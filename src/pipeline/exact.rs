@@ -18,7 +18,7 @@ use crate::survey::Soup;
 /// What came of the exact way.
 pub(super) enum Exact {
     /// The result.
-    Done(Draft),
+    Done(Box<Draft>),
     /// There is none, because operands have holes.
     Open {
         /// For each operand whether it is closed.
@@ -91,7 +91,7 @@ impl Job<'_> {
         }
         stages.begin(Stage::Arrange)?;
         let mut refused = match self.arranged(&Pile::given(operands, apart)) {
-            Ok(draft) => return self.joined(self.simplified(draft)?, standing),
+            Ok(draft) => return self.joined(self.simplified(draft.cleaned(rest))?, standing),
             Err(ArrangeError::Stopped(stopped)) => return Err(stopped.into()),
             Err(error) => error,
         };
@@ -99,7 +99,7 @@ impl Job<'_> {
         let changed = rest.reports.iter().any(|r| r.flipped_in_patches + r.duplicates_dropped + r.both_sided > 0);
         if changed && matches!(refused, ArrangeError::Open { .. }) {
             refused = match self.arranged(&Pile::oriented(rest)) {
-                Ok(draft) => return self.joined(self.simplified(draft)?, standing),
+                Ok(draft) => return self.joined(self.simplified(draft.cleaned(rest))?, standing),
                 Err(ArrangeError::Stopped(stopped)) => return Err(stopped.into()),
                 Err(error) => error,
             };
@@ -171,6 +171,6 @@ impl Job<'_> {
         let Standing { mut mesh, mut sources } = standing.clone();
         mesh.append(&draft.mesh);
         sources.extend(draft.sources);
-        Ok(Exact::Done(Draft { mesh, sources, ..draft }))
+        Ok(Exact::Done(Box::new(Draft { mesh, sources, ..draft })))
     }
 }

@@ -7,6 +7,7 @@ use crate::io::{Colours, TextureMap};
 use crate::lattice::Lattice;
 use crate::mesh::{Solid, SolidError, TriMesh};
 use crate::progress::Progress;
+use crate::survey::Soup;
 
 /// A finished solid and how it came about.
 #[derive(Debug, Clone)]
@@ -35,6 +36,12 @@ pub(super) struct Draft {
 }
 
 impl Draft {
+    /// The same with what cleaning did to the operands.
+    pub(super) fn cleaned(mut self, soup: &Soup) -> Self {
+        self.report.orient = soup.reports.clone();
+        self
+    }
+
     /// The same with the numbers of kinds in its report. `operands`: those that its sources name, in the same place.
     pub(super) fn counted(mut self, operands: &[&TriMesh]) -> Self {
         self.report.triangles = TriangleCounts::of(&kinds_of(&self.mesh, &self.sources, operands));

@@ -109,9 +109,9 @@ fn what_became_of_the_shells_is_told() {
     assert!((volume(&folder, "b.off") / 120.0 - 1.0).abs() < 1e-12);
     // Two that touch at an edge alone.
     put(&folder, "edge.off", &[cube([0.0; 3], 4.0), cube([4.0, 4.0, 0.0], 4.0)]);
-    let run = run_in(&folder, "repair OUT/edge.off -o OUT/c.stl").exits(0);
+    let run = run_in(&folder, "repair OUT/edge.off -o OUT/c.off").exits(0);
     run.says(&["moved apart by a hair, where bodies touch at an edge or a corner alone"]);
-    assert!((volume(&folder, "c.stl") / 128.0 - 1.0).abs() < 1e-5);
+    assert!((volume(&folder, "c.off") / 128.0 - 1.0).abs() < 1e-5);
 }
 
 #[test]

@@ -69,9 +69,10 @@ fn each_rule_makes_of_each_row_of_the_table_what_it_says() {
             let outcome = repair(&mesh, &options(32, inside), &Progress::none()).expect("a solid");
             let (found, report) = (volume(&outcome), &outcome.report);
             assert_eq!(report.inside, inside);
-            // What stands is exact, and so is what lies on the lattice.
-            assert_eq!(report.lattice, name.contains("overlap"), "{name}, {inside:?}");
-            let allowed = if report.lattice { 2e-3 * expected } else { 1e-12 };
+            // What stands is exact, and so is what is cut; where voids touch at an edge, vertices are moved apart by a few numbers.
+            assert!(!report.lattice && report.exact.is_some() == name.contains("overlap"), "{name}, {inside:?}");
+            let touches = report.exact.as_ref().is_some_and(|exact| exact.separated > 0);
+            let allowed = if touches { 1e-7 } else { 1e-12 };
             assert!((found - expected).abs() <= allowed, "{name}, {inside:?}: {found} for {expected}");
         }
     }
