@@ -185,3 +185,24 @@ fn corners_that_are_not_cut_keep_their_coordinates() {
     );
     assert!(kept > given.len() / 2, "{kept} of {}", given.len());
 }
+
+/// Edges of one body lie within a face of another, with points on them: the face has a border on both of their sides.
+#[test]
+fn edges_within_a_face_come_to_an_end() {
+    let parts = [
+        vec![
+            Shell::Tetrahedron([[3, 4, 0], [4, 2, 1], [2, 3, 4], [0, 1, 1]]),
+            Shell::Whole { low: [0, 2, 1], size: [2, 3, 3] },
+        ],
+        vec![Shell::Whole { low: [0, 3, 2], size: [3, 3, 3] }],
+        vec![
+            Shell::Tetrahedron([[2, 0, 2], [4, 3, 1], [1, 3, 4], [4, 2, 4]]),
+            Shell::Whole { low: [3, 0, 1], size: [2, 3, 2] },
+        ],
+    ];
+    let soup = parts.map(|shells| shells.into_iter().map(|shell| (shell, false)).collect::<Vec<_>>());
+    let tree = Expression::Union(vec![Expression::Operand(1), Expression::Operand(2)]);
+    for single in [false, true] {
+        check(&soup, &tree, Inside::Nonzero, single).expect("the right solid");
+    }
+}
