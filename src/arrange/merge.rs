@@ -33,7 +33,8 @@ pub(crate) fn merge(
     let creases = creases(refined, &corners, &region);
     let is_whole = |face: &Face| refined.is_whole(face.facet);
     // The border half-edges of cut sheets, by where they start.
-    let mut next: FxHashMap<(Region, u32), u32> = FxHashMap::default();
+    // A region that lies on both sides of an edge has two of them at each point.
+    let mut next: FxHashMap<(Region, u32), [u32; 2]> = FxHashMap::default();
     let mut starts: Vec<(Region, [u32; 2], Cover)> = Vec::new();
     for (n, face) in faces.iter().enumerate().filter(|(_, face)| !is_whole(face)) {
         for k in 0..3 {
@@ -42,7 +43,7 @@ pub(crate) fn merge(
                 continue;
             }
             match creases.straight.contains(&u) {
-                true => _ = next.insert((region[n], u), v),
+                true => next.entry((region[n], u)).or_insert([v; 2])[1] = v,
                 false => starts.push((region[n], [u, v], face.cover)),
             }
         }
@@ -50,8 +51,9 @@ pub(crate) fn merge(
     let mut borders: Vec<Border> = starts
         .into_iter()
         .map(|(region, [u, mut v], cover)| {
-            while let Some(&on) = next.get(&(region, v)) {
-                v = on;
+            let mut from = u;
+            while let Some(&on) = next.get(&(region, v)).and_then(|ends| ends.iter().find(|&&end| end != from)) {
+                (from, v) = (v, on);
             }
             (region, [u, v], cover)
         })

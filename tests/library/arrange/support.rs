@@ -172,5 +172,6 @@ pub fn expression(operands: usize) -> impl Strategy<Value = Expression> {
 /// `MESHWRIGHT_CASES=1000 cargo test --release --test library arrange`.
 pub fn cases(cases: u32) -> ProptestConfig {
     let asked = std::env::var("MESHWRIGHT_CASES").ok().and_then(|count| count.parse().ok());
-    ProptestConfig { cases: asked.unwrap_or(cases), failure_persistence: None, ..ProptestConfig::default() }
+    let cases = asked.unwrap_or(cases);
+    ProptestConfig { cases, max_global_rejects: 20 * cases, failure_persistence: None, ..ProptestConfig::default() }
 }
