@@ -31,6 +31,8 @@ pub enum ArrangeError {
         closed: Vec<bool>,
         /// How many triangles were cut, because they touch others.
         cut: usize,
+        /// How many of the edges are pieces of rims that run into other triangles.
+        rims_cut: usize,
     },
     /// Triangles touch in more places than there may be.
     #[error("triangles touch in {pairs} pairs, more than the {most} that are cut exactly")]

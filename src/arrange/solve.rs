@@ -131,7 +131,9 @@ fn opened(refined: &Refined, open: &[Gap], fine: &Fine, operands: usize) -> Arra
     let ends = |gap: &Gap| gap.ends.map(|p| (refined.points.approximate(p) * fine.step).to_array());
     let first = open.first().map(|gap| Opening { operand: gap.operand as usize, ends: ends(gap) });
     let first = first.unwrap_or(Opening { operand: 0, ends: [[0.0; 3]; 2] });
-    ArrangeError::Open { edges: open.len(), first, closed, cut: refined.cut() }
+    let is_made = |p: &u32| refined.points.vertex(*p).is_none();
+    let rims_cut = open.iter().filter(|gap| gap.ends.iter().any(is_made)).count();
+    ArrangeError::Open { edges: open.len(), first, closed, cut: refined.cut(), rims_cut }
 }
 
 /// For each cell whether it is inside of the result.

@@ -23,7 +23,7 @@ pub(super) enum Exact {
     Open {
         /// For each operand whether it is closed.
         closed: Vec<bool>,
-        /// Whether triangles cross each other besides.
+        /// Whether triangles cross each other besides, away from rims.
         crosses: bool,
     },
     /// It is not to be gone, or leads nowhere.
@@ -106,7 +106,10 @@ impl Job<'_> {
         }
         match refused {
             refused if method == Method::Exact => Err(BooleanError::NotExact(refused)),
-            ArrangeError::Open { closed, cut, .. } => Ok(Exact::Open { closed, crosses: cut > 0 }),
+            ArrangeError::Open { closed, cut, rims_cut, .. } => {
+                // Rims that run into other surfaces are cracks that overlap: cut, they would leave flaps.
+                Ok(Exact::Open { closed, crosses: cut > 0 && rims_cut == 0 })
+            }
             _ => Ok(Exact::None),
         }
     }

@@ -63,13 +63,13 @@ impl<'a> Ordered<'a> {
     }
 
     fn not_exact(&self, error: ArrangeError) -> ArrangeError {
-        let ArrangeError::Open { edges, mut first, closed: of_places, cut } = error else { return error };
+        let ArrangeError::Open { edges, mut first, closed: of_places, cut, rims_cut } = error else { return error };
         let mut closed = of_places.clone();
         for (&given, &is_closed) in self.given.iter().zip(&of_places) {
             closed[given] = is_closed;
         }
         first.operand = self.given.get(first.operand).copied().unwrap_or(first.operand);
-        ArrangeError::Open { edges, first, closed, cut }
+        ArrangeError::Open { edges, first, closed, cut, rims_cut }
     }
 }
 
