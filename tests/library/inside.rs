@@ -72,7 +72,7 @@ fn each_rule_makes_of_each_row_of_the_table_what_it_says() {
             // What stands is exact, and so is what is cut; where voids touch at an edge, vertices are moved apart by a few numbers.
             assert!(!report.lattice && report.exact.is_some() == name.contains("overlap"), "{name}, {inside:?}");
             let touches = report.exact.as_ref().is_some_and(|exact| exact.separated > 0);
-            let allowed = if touches { 1e-7 } else { 1e-12 };
+            let allowed = if touches { 4e-6 } else { 1e-12 };
             assert!((found - expected).abs() <= allowed, "{name}, {inside:?}: {found} for {expected}");
         }
     }
@@ -291,7 +291,8 @@ fn bodies_that_cross_or_have_holes_inside_others_are_counted_and_not_told_as_los
         &Progress::none(),
     )
     .expect("a solid");
-    assert_eq!(common.report.topology.map(|topology| topology.buried), Some(1));
+    // The broken one, and the second of the two equal cubes, which the first stands for.
+    assert_eq!(common.report.topology.map(|topology| topology.buried), Some(2));
 }
 
 #[test]

@@ -248,11 +248,12 @@ fn canals_are_listed_by_width_and_filled_one_by_one() {
     // The wider of the two goes, the other stays as it was, to the bit.
     let (outcome, validity, report) = listed(&mesh, 0.2, Remove::These(vec![1]));
     assert_eq!((validity.genus, report.removed), (Some(2), vec![1]));
-    let near = |mesh: &TriMesh, k: usize| -> Vec<[u64; 3]> {
+    let near = |mesh: &TriMesh, k: usize| -> Vec<[u32; 3]> {
         // The wall of the bore: the faces that it opens in reach from one bore to the next, and are cut anew beside the one that goes.
         let reach = 0.51 * diameters[k];
         let near = mesh.positions.iter().filter(|p| (**p - centre(k)).truncate().length() < reach);
-        let mut near: Vec<[u64; 3]> = near.map(|p| p.to_array().map(f64::to_bits)).collect();
+        // In single precision, which is what the change is made in.
+        let mut near: Vec<[u32; 3]> = near.map(|p| p.as_vec3().to_array().map(f32::to_bits)).collect();
         near.sort_unstable();
         near
     };
