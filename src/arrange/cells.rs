@@ -45,10 +45,8 @@ pub(crate) fn steps(refined: &Refined, piece: u32, owner: &impl Owner, mut visit
     }
 }
 
-/// The edges around which the triangles of some operand do not close, in the order of their ends.
-pub(crate) fn gaps(refined: &Refined, owner: &impl Owner) -> Vec<Gap> {
-    let corners: Vec<[u32; 3]> = refined.pieces.iter().map(|piece| piece.corners).collect();
-    let edges = Edges::new(&corners, refined.points.len());
+/// The edges around which the triangles of some operand do not close, in the order of their ends. `edges`: those of the pieces.
+pub(crate) fn gaps(refined: &Refined, edges: &Edges<'_>, owner: &impl Owner) -> Vec<Gap> {
     let mut found = Vec::new();
     let mut sums: Vec<(u32, i32)> = Vec::new();
     edges.each(|edge| {
@@ -67,12 +65,11 @@ pub(crate) fn gaps(refined: &Refined, owner: &impl Owner) -> Vec<Gap> {
 }
 
 impl Cells {
-    /// The cells between the pieces, which must close around each edge.
-    pub(crate) fn of(refined: &Refined, progress: &Progress) -> Result<Self, Stopped> {
+    /// The cells between the pieces, which must close around each of their `edges`.
+    pub(crate) fn of(refined: &Refined, edges: &Edges<'_>, progress: &Progress) -> Result<Self, Stopped> {
         progress.check()?;
-        let corners: Vec<[u32; 3]> = refined.pieces.iter().map(|piece| piece.corners).collect();
-        let edges = Edges::new(&corners, refined.points.len());
-        let mut sides = Union::new(2 * corners.len());
+        let pieces = refined.pieces.len() as u32;
+        let mut sides = Union::new(2 * pieces as usize);
         let mut around: Vec<Spoke> = Vec::new();
         edges.each(|edge| {
             around.clear();
@@ -92,7 +89,7 @@ impl Cells {
             let new = number.len() as Cell;
             *number.entry(root).or_insert(new)
         };
-        let beside: Vec<[Cell; 2]> = (0..corners.len() as u32).map(|p| [cell(2 * p), cell(2 * p + 1)]).collect();
+        let beside: Vec<[Cell; 2]> = (0..pieces).map(|p| [cell(2 * p), cell(2 * p + 1)]).collect();
         let count = number.len();
         let mut first: FxHashMap<[Cell; 2], u32> = FxHashMap::default();
         for (&pair, piece) in beside.iter().zip(0..) {

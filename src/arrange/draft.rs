@@ -8,6 +8,7 @@ use super::fine::Fine;
 use super::near::Near;
 use super::refine::Refined;
 use crate::mesh::TriMesh;
+use crate::mesh::weld::canonical;
 
 /// What a vertex of a draft is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,8 +57,7 @@ impl Draft {
                 *of.entry(p).or_insert_with(|| {
                     let (place, kind) = rounding.rounded(refined, p);
                     let v = *at.entry(place).or_insert_with(|| draft.add(place, kind));
-                    if let (Kind::Own(_), Kind::Placed | Kind::Moved | Kind::Made(_)) = (kind, draft.kinds[v as usize])
-                    {
+                    if matches!(kind, Kind::Own(_)) && !matches!(draft.kinds[v as usize], Kind::Own(_)) {
                         draft.kinds[v as usize] = kind;
                     }
                     v
@@ -79,13 +79,21 @@ impl Draft {
         self.places.len() as u32 - 1
     }
 
+    /// Makes one vertex of those at one place, and takes out what that leaves without area.
+    pub(crate) fn weld(&mut self) {
+        let mut at: FxHashMap<[i32; 3], u32> = FxHashMap::default();
+        let first: Vec<u32> = (0..).zip(&self.places).map(|(v, &place)| *at.entry(place).or_insert(v)).collect();
+        self.triangles.iter_mut().flatten().for_each(|v| *v = first[*v as usize]);
+        let keep: Vec<bool> = self.triangles.iter().map(|[a, b, c]| a != b && b != c && c != a).collect();
+        self.retain(&keep);
+        self.cancel();
+    }
+
     /// Takes out triangles that meet their like turned over: rounding made one of the two sides of something thin of them.
     fn cancel(&mut self) {
         let key = |t: &[u32; 3]| {
-            let mut sorted = *t;
-            sorted.sort_unstable();
-            let [a, b, c] = *t;
-            (sorted, if [[a, b, c], [b, c, a], [c, a, b]].contains(&sorted) { 1 } else { -1 })
+            let (sorted, even) = canonical(*t);
+            (sorted, if even { 1 } else { -1 })
         };
         let mut left: FxHashMap<[u32; 3], i32> = FxHashMap::default();
         for t in &self.triangles {

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::plane::{Plane, normal};
+use crate::mesh::weld::canonical;
 
 /// A triangle of the input that covers a facet or a piece of one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -43,8 +44,8 @@ impl Facets {
             .enumerate()
             .filter(|(_, t)| normal(t.map(|v| places[v as usize])) != [0; 3])
             .map(|(triangle, t)| {
-                let (sorted, reversed) = canonical(t.map(|v| numbers[v as usize]));
-                (sorted, Cover { triangle: triangle as u32, reversed })
+                let (sorted, even) = canonical(t.map(|v| numbers[v as usize]));
+                (sorted, Cover { triangle: triangle as u32, reversed: !even })
             })
             .collect();
         // By triangles, but copies together with the first.
@@ -83,11 +84,4 @@ impl Facets {
     pub(crate) fn plane(&self, facet: u32) -> Plane {
         Plane::through(self.places(facet))
     }
-}
-
-/// The vertices in increasing order, and whether that is an odd permutation.
-fn canonical([a, b, c]: [u32; 3]) -> ([u32; 3], bool) {
-    let mut sorted = [a, b, c];
-    sorted.sort_unstable();
-    (sorted, ![[a, b, c], [b, c, a], [c, a, b]].contains(&sorted))
 }

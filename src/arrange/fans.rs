@@ -22,9 +22,34 @@ struct Wedge {
     inward: DVec3,
 }
 
+/// How often what touches is moved apart, each time twice as far: where many contacts are close together, two may come to one place again.
+const ATTEMPTS: u32 = 6;
+
+/// What came of moving apart what touches.
+pub(crate) struct Separated {
+    /// Vertices that were made for it.
+    pub(crate) vertices: usize,
+    /// Whether nothing touches any more.
+    pub(crate) is_manifold: bool,
+}
+
 impl Draft {
-    /// Moves apart what touches at edges and vertices alone; returns how many vertices were made for it. `factor` makes the moves longer.
-    pub(crate) fn separate(&mut self, fine: &Fine, factor: f64) -> usize {
+    /// Moves apart what touches at edges and vertices alone. `factor` makes the moves longer.
+    pub(crate) fn separate(&mut self, fine: &Fine, factor: f64) -> Separated {
+        let mut vertices = 0;
+        for attempt in 0..ATTEMPTS {
+            let made = self.move_apart(fine, factor * f64::from(1 << attempt));
+            if made == 0 {
+                return Separated { vertices, is_manifold: true };
+            }
+            vertices += made;
+            self.weld();
+        }
+        Separated { vertices, is_manifold: false }
+    }
+
+    /// Moves apart what touches, once; returns how many vertices were made.
+    fn move_apart(&mut self, fine: &Fine, factor: f64) -> usize {
         let before = self.places.len();
         let (wedges, mut corners) = self.wedges();
         for wedge in &wedges {

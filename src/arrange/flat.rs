@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::fine::ERROR;
 use super::point::Points;
-use super::wide::{Kept, Wide};
+use super::wide::{Kept, sign_of_determinant};
 
 /// A point by its exact coordinates across an axis.
 #[derive(Debug, Clone, Copy)]
@@ -70,14 +70,7 @@ impl FlatPoints {
             let [u, v] = [q - p, r - p].map(|d| [d.x as i128, d.y as i128]);
             return (u[0] * v[1] - u[1] * v[0]).signum() as i32;
         }
-        exact_turn([a, b, c])
+        // Weights are positive, so that the determinant has the sign of the turn.
+        sign_of_determinant(&[a, b, c].map(|p| [p.x.wide(), p.y.wide(), p.w.wide()]))
     }
-}
-
-fn exact_turn(points: [&Flat; 3]) -> i32 {
-    let [a, b, c] = points.map(|p| [p.x.wide(), p.y.wide(), p.w.wide()]);
-    let minor = |i: usize, j: usize| b[i].mul(&c[j]).sub(&b[j].mul(&c[i]));
-    // Weights are positive, so that the determinant has the sign of the turn.
-    let terms = [a[0].mul(&minor(1, 2)), a[1].mul(&minor(2, 0)), a[2].mul(&minor(0, 1))];
-    terms.iter().fold(Wide::ZERO, |sum, term| sum.add(term)).sign()
 }

@@ -8,10 +8,10 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::extract::Face;
 use super::facets::Cover;
-use super::flat::FlatPoints;
+use super::layout::Layout;
 use super::planar::Planar;
 use super::plane::Plane;
-use super::refine::{BEYOND, Refined, sorted_by_place};
+use super::refine::Refined;
 use crate::mesh::edges::Edges;
 use crate::progress::{Progress, Stopped};
 
@@ -32,8 +32,7 @@ pub(crate) fn merge(
     let region: Vec<Region> = faces.iter().map(|face| (face.facet, face.over, class(face.cover.triangle))).collect();
     let creases = creases(refined, &corners, &region);
     let is_whole = |face: &Face| refined.is_whole(face.facet);
-    // The border half-edges of cut sheets, by where they start.
-    // A region that lies on both sides of an edge has two of them at each point.
+    // The border half-edges of cut sheets, by where they start. A region that lies on both sides of an edge has two of them at each point.
     let mut next: FxHashMap<(Region, u32), [u32; 2]> = FxHashMap::default();
     let mut starts: Vec<(Region, [u32; 2], Cover)> = Vec::new();
     for (n, face) in faces.iter().enumerate().filter(|(_, face)| !is_whole(face)) {
@@ -151,32 +150,16 @@ fn creases(refined: &Refined, corners: &[[u32; 3]], region: &[Region]) -> Crease
 fn triangulated(refined: &Refined, borders: &[Border], contacts: &[(u32, u32)]) -> Vec<Face> {
     let facet = borders[0].0.0;
     let plane: Plane = refined.facets.plane(facet);
-    let axis = plane.axis();
-    let mut numbers: Vec<u32> = borders.iter().flat_map(|border| border.1).collect();
     let touched = contacts.partition_point(|contact| contact.0 < facet);
-    numbers.extend(contacts[touched..].iter().take_while(|contact| contact.0 == facet).map(|contact| contact.1));
-    let single = refined.is_single(facet);
-    let corners = refined.facets.corners[facet as usize];
-    numbers.extend(corners.iter().filter(|_| single));
-    numbers.sort_unstable();
-    numbers.dedup();
-    sorted_by_place(&refined.points, &mut numbers);
-    let local: FxHashMap<u32, u32> = numbers.iter().zip(0..).map(|(&number, n)| (number, n)).collect();
-    let mut flat = FlatPoints::new(&refined.points, &numbers, axis, plane.normal[axis] < 0);
-    let root = match single {
-        true => {
-            let corners = corners.map(|v| local[&v]);
-            let first = (0..3).min_by_key(|&k| corners[k]).unwrap_or(0);
-            [0, 1, 2].map(|n| corners[(first + n) % 3])
-        }
-        false => BEYOND.map(|[x, y]| flat.push(x, y)),
-    };
-    let mut planar = Planar::new(&flat, root);
-    (0..numbers.len() as u32).filter(|p| !root.contains(p)).for_each(|p| planar.insert(p));
+    let touched = contacts[touched..].iter().take_while(|contact| contact.0 == facet).map(|contact| contact.1);
+    let numbers = borders.iter().flat_map(|border| border.1).chain(touched).collect();
+    let alone = refined.is_single(facet).then(|| refined.facets.corners[facet as usize]);
+    let layout = Layout::new(&refined.points, numbers, &plane, alone);
+    let mut planar = layout.planar();
     // What lies left of an edge, as the facet is seen: regions over it run the other way round.
     let mut left: FxHashMap<[u32; 2], (Region, Cover)> = FxHashMap::default();
     for &(region, [u, v], cover) in borders {
-        let [u, v] = [local[&u], local[&v]];
+        let [u, v] = [u, v].map(|p| layout.local(p));
         left.insert(if region.1 { [v, u] } else { [u, v] }, (region, cover));
     }
     let mut edges: Vec<[u32; 2]> = left.keys().map(|&[u, v]| [u.min(v), u.max(v)]).collect();
@@ -187,7 +170,7 @@ fn triangulated(refined: &Refined, borders: &[Border], contacts: &[(u32, u32)]) 
     let inside = regions(&planar, &left);
     let face = |(corners, found): (&[u32; 3], &Option<(Region, Cover)>)| {
         let ((_, over, _), cover) = (*found)?;
-        let [a, b, c] = corners.map(|v| numbers[v as usize]);
+        let [a, b, c] = layout.named(*corners);
         Some(Face { corners: if over { [a, c, b] } else { [a, b, c] }, facet, over, cover })
     };
     planar.triangles.iter().zip(&inside).filter_map(face).collect()

@@ -23,6 +23,7 @@ mod facets;
 mod fans;
 mod fine;
 mod flat;
+mod layout;
 mod meet;
 mod merge;
 mod near;

@@ -59,8 +59,12 @@ impl<'a> Planar<'a> {
             Found::Edge(t, k) => self.split_edge(t, k, p),
         };
         self.last = around[0];
-        let mut stack: Vec<[u32; 2]> = around.into_iter().map(|t| self.opposite(t, p)).collect();
-        let mut budget = 64 * self.points.len() + 64;
+        let stack = around.into_iter().map(|t| self.opposite(t, p)).collect();
+        self.improve_all(stack, 64 * self.points.len() + 64);
+    }
+
+    /// Flips edges, and those beside what was flipped, until they are Delaunay, or so many have been looked at.
+    fn improve_all(&mut self, mut stack: Vec<[u32; 2]>, mut budget: usize) {
         while let Some([a, b]) = stack.pop() {
             let Some((t, k)) = self.edge(a, b) else { continue };
             budget -= 1;
@@ -347,16 +351,7 @@ impl<'a> Planar<'a> {
             let corners = self.triangles[t];
             stack.extend((0..3).map(|k| [corners[k], corners[(k + 1) % 3]]).filter(|[a, b]| a < b));
         }
-        let mut budget = 16 * stack.len() + 64;
-        while let Some([a, b]) = stack.pop() {
-            let Some((t, k)) = self.edge(a, b) else { continue };
-            budget -= 1;
-            if budget == 0 {
-                break;
-            }
-            if let Some([c, d]) = self.improve(t, k) {
-                stack.extend([[a, c], [a, d], [b, c], [b, d]]);
-            }
-        }
+        let budget = 16 * stack.len() + 64;
+        self.improve_all(stack, budget);
     }
 }

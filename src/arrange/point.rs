@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 
 use super::fine::ERROR;
 use super::plane::Plane;
-use super::wide::{Kept, PRIME, Wide, inverse, times};
+use super::wide::{Kept, PRIME, Wide, inverse, sign_of_determinant, times};
 
 /// A point by its exact coordinates: those of `at`, divided by `w`, which is positive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -210,12 +210,7 @@ impl Points {
         }
         let [p, q, r] = [a, b, c].map(|point| self.exact(point));
         let rows = [p, q, r].map(|point| (point.at.map(|x| x.wide()), point.w.wide()));
-        (0..3).all(|axis| {
-            let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-            let [a, b, c] = rows.each_ref().map(|(at, w)| [&at[i], &at[j], w]);
-            let minor = |i: usize, j: usize| b[i].mul(c[j]).sub(&b[j].mul(c[i]));
-            a[0].mul(&minor(1, 2)).add(&a[1].mul(&minor(2, 0))).add(&a[2].mul(&minor(0, 1))).sign() == 0
-        })
+        (0..3).all(|axis| sign_of_determinant(&rows.map(|(at, w)| [at[(axis + 1) % 3], at[(axis + 2) % 3], w])) == 0)
     }
 
     /// On which side of a plane a point lies: 1 where its normal points to, 0 on it.

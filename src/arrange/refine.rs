@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::facets::{Cover, Facets};
-use super::flat::FlatPoints;
+use super::layout::Layout;
 use super::planar::Planar;
 use super::point::Points;
 use super::sheets::{Sheet, cross, sheets};
@@ -47,6 +47,11 @@ enum State {
 }
 
 impl Refined {
+    /// The points of each piece.
+    pub(crate) fn corners(&self) -> Vec<[u32; 3]> {
+        self.pieces.iter().map(|piece| piece.corners).collect()
+    }
+
     /// Whether a facet is a piece as it is.
     pub(crate) fn is_whole(&self, facet: u32) -> bool {
         self.state[facet as usize] == State::Whole
@@ -133,37 +138,14 @@ impl super::sheets::Segment {
     }
 }
 
-/// Beyond all lattice points: the corners of a triangle around them.
-pub(super) const BEYOND: [[i64; 2]; 3] = [[-(1 << 33), -(1 << 32)], [1 << 33, -(1 << 32)], [0, 1 << 33]];
-
-/// Sorts points by their places.
-pub(super) fn sorted_by_place(points: &Points, numbers: &mut [u32]) {
-    numbers.sort_by(|&a, &b| {
-        (0..3).map(|axis| points.compare_along(a, b, axis)).find(|order| order.is_ne()).unwrap_or(a.cmp(&b))
-    });
-}
-
 fn cut(sheet: &Sheet, facets: &Facets, points: &Points) -> Cut {
-    let mut numbers = sheet.all_points(facets);
-    // The order of places, not of numbers: the result must not depend on the order of the input.
-    sorted_by_place(points, &mut numbers);
-    let local: FxHashMap<u32, u32> = numbers.iter().zip(0..).map(|(&number, n)| (number, n)).collect();
-    let mirrored = sheet.plane.normal[sheet.axis] < 0;
-    let mut flat = FlatPoints::new(points, &numbers, sheet.axis, mirrored);
     let single = sheet.facets.len() == 1;
-    let root = match single {
-        true => {
-            let corners = facets.corners[sheet.facets[0] as usize].map(|v| local[&v]);
-            let first = (0..3).min_by_key(|&k| corners[k]).unwrap_or(0);
-            [0, 1, 2].map(|n| corners[(first + n) % 3])
-        }
-        false => BEYOND.map(|[x, y]| flat.push(x, y)),
-    };
-    let mut planar = Planar::new(&flat, root);
-    (0..numbers.len() as u32).filter(|p| !root.contains(p)).for_each(|p| planar.insert(p));
+    let facet = single.then(|| facets.corners[sheet.facets[0] as usize]);
+    let layout = Layout::new(points, sheet.all_points(facets), &sheet.plane, facet);
+    let mut planar = layout.planar();
     let mut parts: Vec<([u32; 2], usize)> = Vec::new();
     for (s, segment) in sheet.segments.iter().enumerate() {
-        let chain: Vec<u32> = segment.chain().map(|p| local[&p]).collect();
+        let chain: Vec<u32> = segment.chain().map(|p| layout.local(p)).collect();
         parts.extend(chain.windows(2).map(|pair| ([pair[0].min(pair[1]), pair[0].max(pair[1])], s)));
     }
     parts.sort_unstable();
@@ -173,9 +155,8 @@ fn cut(sheet: &Sheet, facets: &Facets, points: &Points) -> Cut {
         planar.fix(a, b, n as u32);
     }
     planar.relax();
-    let named = |corners: [u32; 3]| corners.map(|v| numbers[v as usize]);
     if single {
-        let pieces = planar.triangles.iter().map(|&corners| (named(corners), 0)).collect();
+        let pieces = planar.triangles.iter().map(|&corners| (layout.named(corners), 0)).collect();
         return Cut { pieces, sets: Vec::new() };
     }
     let edge_of =
@@ -188,7 +169,7 @@ fn cut(sheet: &Sheet, facets: &Facets, points: &Points) -> Cut {
             cut.sets.push(covers(sheet, facets, state));
             cut.sets.len() as u32 - 1
         });
-        cut.pieces.push((named(corners), set));
+        cut.pieces.push((layout.named(corners), set));
     }
     cut
 }

@@ -18,8 +18,10 @@ pub struct ArrangeReport {
     pub curves: usize,
     /// Parts of space between the surfaces, the outside among them.
     pub cells: usize,
-    /// Shells that faced the wrong way and were taken the other way round.
-    pub turned: usize,
+    /// For each operand, its shells that faced the wrong way and were taken the other way round.
+    pub turned: Vec<usize>,
+    /// For each operand, the triangles of those shells.
+    pub turned_triangles: Vec<usize>,
     /// How often the result was united with itself again, because triangles crossed once their vertices were rounded.
     pub rounds: usize,
     /// Vertices that were moved apart, by a few steps of the numbers in the file, where solids touched at an edge or a vertex alone.

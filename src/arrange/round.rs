@@ -1,8 +1,8 @@
 //! From an exact surface to one whose vertices have numbers that a file can hold, and of which no triangle crosses another.
 //!
 //! Rounding makes triangles cross that only came near each other. What crosses is united with itself again: the surface as it is
-//! now, exactly, and rounded again. So that this ends, points that are made near a vertex become that vertex, and what keeps crossing is moved onto a
-//! grid that gets coarser from round to round.
+//! now, exactly, and rounded again. So that this ends, points that are made near a vertex become that vertex, needles among what crosses are collapsed,
+//! longer ones from round to round, and what keeps crossing is moved onto a grid.
 
 use glam::DVec3;
 
@@ -15,6 +15,7 @@ use super::merge::merge;
 use super::near::Near;
 use super::options::ArrangeOptions;
 use super::refine::{Refined, refine};
+use crate::mesh::edges::Edges;
 use crate::mesh::{TriMesh, flat_triangles, intersections_with, self_intersections};
 use crate::progress::{Progress, Stopped};
 
@@ -29,8 +30,7 @@ const WORSE: usize = 4;
 
 /// One way of going on where triangles cross once rounded. Lengths are in the coarsest numbers that coordinates along each axis may have.
 ///
-/// Measured on the closed files of the real data in single and double precision: no way ends well on all of them, and one of the first two ends
-/// well on each. Grids that grow from round to round, and cutting needles instead of collapsing them, end well on half of the hard ones.
+/// Measured on the closed files of the real data in single and double precision: no way ends well on all of them, and one of these ends well on each. Grids that grow from round to round, and cutting needles instead of collapsing them, end well on half of the hard ones.
 #[derive(Debug, Clone, Copy)]
 struct Way {
     /// Rounds before anything is moved onto the grid.
@@ -126,17 +126,16 @@ impl Way {
             progress.check()?;
             let mut mesh = draft.mesh(surface.fine, surface.input);
             let mut offenders = surface.offenders(&draft, &mesh, progress)?;
-            let mut separated = 0;
             if offenders.is_empty() {
-                separated = draft.separate(surface.fine, f64::from(1 << number));
-                if separated > 0 {
+                let separated = draft.separate(surface.fine, f64::from(1 << number));
+                if separated.vertices > 0 {
                     mesh = draft.mesh(surface.fine, surface.input);
                     offenders = surface.offenders(&draft, &mesh, progress)?;
                 }
-            }
-            if offenders.is_empty() {
-                let Draft { sources, .. } = draft;
-                return Ok(Some(Rounded { mesh, sources, rounds: number, separated, volume_error: 0.0 }));
+                if offenders.is_empty() && separated.is_manifold {
+                    let (sources, separated) = (draft.sources, separated.vertices);
+                    return Ok(Some(Rounded { mesh, sources, rounds: number, separated, volume_error: 0.0 }));
+                }
             }
             fewest = fewest.min(offenders.len());
             if draft.triangles.len() > most || offenders.len() > WORSE * fewest + 100 {
@@ -216,10 +215,12 @@ fn united(draft: &Draft, reach: f64, surface: &Surface<'_>, progress: &Progress)
     touched.dedup();
     let near = Near::new(&facets, &touched, surface.fine, reach);
     let refined = refine(facets, &pairs, progress)?;
-    if !gaps(&refined, &One).is_empty() {
+    let corners = refined.corners();
+    let edges = Edges::new(&corners, refined.points.len());
+    if !gaps(&refined, &edges, &One).is_empty() {
         return Ok(None);
     }
-    let cells = Cells::of(&refined, progress)?;
+    let cells = Cells::of(&refined, &edges, progress)?;
     let Some(winding) = cells.winding(&refined, 1, &One) else { return Ok(None) };
     let inside: Vec<bool> = winding.iter().map(|&winding| winding >= 1).collect();
     let class = |t: u32| surface.options.classes.get(draft.sources[t as usize] as usize).copied().unwrap_or(0);
@@ -244,12 +245,9 @@ pub(crate) fn touching(
 impl Surface<'_> {
     /// The volume before rounding, cubic model units, to about 1e-12 of it.
     pub(super) fn volume(&self) -> f64 {
-        let corner = |p: u32| match self.refined.points.vertex(p) {
-            Some(_) => match self.kinds[p as usize] {
-                Kind::Own(v) => self.input[v as usize],
-                _ => self.refined.points.approximate(p) * self.fine.step,
-            },
-            None => self.refined.points.approximate(p) * self.fine.step,
+        let corner = |p: u32| match self.kinds.get(p as usize) {
+            Some(&Kind::Own(v)) => self.input[v as usize],
+            _ => self.refined.points.approximate(p) * self.fine.step,
         };
         volume(self.faces.iter().map(|face: &Face| face.corners.map(corner)))
     }

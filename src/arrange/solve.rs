@@ -14,6 +14,7 @@ use super::turn::Turned;
 use super::{ArrangeError, ArrangeOptions, ArrangeReport, Opening};
 use crate::ldi::{Expression, Operands};
 use crate::mesh::TriMesh;
+use crate::mesh::edges::Edges;
 use crate::orient::OrientMode;
 use crate::progress::Progress;
 
@@ -67,11 +68,13 @@ fn attempted(
     let fine = Fine::around(mesh, options.single);
     let (refined, kinds, pairs) = refined(mesh, &fine, options.suspects, progress)?;
     let owner = Turned::none(operands, mesh.triangles.len());
-    let open = gaps(&refined, &owner);
+    let corners = refined.corners();
+    let edges = Edges::new(&corners, refined.points.len());
+    let open = gaps(&refined, &edges, &owner);
     if !open.is_empty() {
         return Err(opened(&refined, &open, &fine, operands.count()));
     }
-    let cells = Cells::of(&refined, progress)?;
+    let cells = Cells::of(&refined, &edges, progress)?;
     let Some(winding) = cells.winding(&refined, operands.count(), &owner) else {
         return Err(opened(&refined, &[], &fine, operands.count()));
     };
@@ -83,6 +86,7 @@ fn attempted(
     let class = |t: u32| options.classes.get(t as usize).copied().unwrap_or(0);
     let found = extract(&refined, &cells, &inside);
     let faces = merge(&refined, found, &class, progress)?;
+    let (turned, turned_triangles) = owner.counts();
     let mut report = ArrangeReport {
         triangles: mesh.triangles.len(),
         pairs,
@@ -90,7 +94,8 @@ fn attempted(
         points: refined.points.len() - refined.facets.vertices.len(),
         curves: refined.curves.len(),
         cells: cells.count,
-        turned: owner.count(),
+        turned,
+        turned_triangles,
         ..ArrangeReport::default()
     };
     if faces.is_empty() {

@@ -4,7 +4,7 @@ use super::cells::{Cells, Owner, steps};
 use super::refine::Refined;
 use crate::ldi::Operands;
 use crate::mesh::TriMesh;
-use crate::mesh::edges::{Edges, Union};
+use crate::shells::{Shells, shells};
 
 /// The triangles of several operands, and which of their shells are taken the other way round.
 #[derive(Debug)]
@@ -12,6 +12,7 @@ pub(super) struct Turned<'a> {
     operands: &'a Operands,
     /// The shell of each triangle: what is joined through edges.
     shell: Vec<u32>,
+    /// For each shell whether it is turned over.
     turned: Vec<bool>,
 }
 
@@ -34,9 +35,16 @@ impl<'a> Turned<'a> {
         Self { operands, shell: vec![0; triangles], turned: vec![false] }
     }
 
-    /// How many shells are turned over.
-    pub(super) fn count(&self) -> usize {
-        self.turned.iter().filter(|&&turned| turned).count()
+    /// For each operand how many of its shells are turned over, and how many triangles these have.
+    pub(super) fn counts(&self) -> (Vec<usize>, Vec<usize>) {
+        let (mut shells, mut triangles) = (vec![0; self.operands.count()], vec![0; self.operands.count()]);
+        let mut counted = vec![false; self.turned.len()];
+        for (t, &shell) in (0..).zip(&self.shell).filter(|&(_, &shell)| self.turned[shell as usize]) {
+            let operand = self.operands.of(t);
+            triangles[operand] += 1;
+            shells[operand] += usize::from(!std::mem::replace(&mut counted[shell as usize], true));
+        }
+        (shells, triangles)
     }
 
     /// Turns over what makes winding numbers negative, so that none is, if that can be: of operands that have such numbers, all shells, or those that
@@ -52,21 +60,13 @@ impl<'a> Turned<'a> {
         if winding.iter().all(|&w| w >= 0) {
             return (owner, winding);
         }
-        owner.shell = shells(mesh, operands);
-        let shells = owner.shell.iter().max().map_or(0, |&last| last as usize + 1);
-        owner.turned = vec![false; shells];
-        let volumes = volumes(mesh, &owner.shell, shells);
-        let operand_of = |shell: &[u32]| {
-            let mut of = vec![0usize; shells];
-            shell.iter().enumerate().for_each(|(t, &s)| of[s as usize] = operands.of(t as u32));
-            of
-        };
-        let operand_of = operand_of(&owner.shell);
+        let Shells { of, list } = shells_of(mesh, operands);
+        (owner.shell, owner.turned) = (of, vec![false; list.len()]);
         // A file that is inside out as a whole.
         for operand in 0..count {
             let own = || winding.iter().skip(operand).step_by(count);
             if own().any(|&w| w < 0) && own().all(|&w| w <= 0) {
-                (0..shells).filter(|&s| operand_of[s] == operand).for_each(|s| owner.turned[s] = true);
+                (0..list.len()).filter(|&s| list[s].operand == operand).for_each(|s| owner.turned[s] = true);
             }
         }
         let mut found = cells.winding(refined, count, &owner).unwrap_or(winding);
@@ -75,7 +75,8 @@ impl<'a> Turned<'a> {
                 break;
             }
             let wrong = owner.beside_negative(refined, cells, &found);
-            let turn: Vec<usize> = (0..shells).filter(|&s| wrong[s] && (volumes[s] < 0.0) != owner.turned[s]).collect();
+            let turn: Vec<usize> =
+                (0..list.len()).filter(|&s| wrong[s] && (list[s].volume < 0.0) != owner.turned[s]).collect();
             if turn.is_empty() {
                 break;
             }
@@ -107,41 +108,12 @@ impl<'a> Turned<'a> {
     }
 }
 
-/// The shell of each triangle, numbered by their first triangles.
-fn shells(mesh: &TriMesh, operands: &Operands) -> Vec<u32> {
-    let welded = mesh.welded();
-    let edges = Edges::new(&welded.triangles, welded.positions.len());
-    let mut union = Union::new(mesh.triangles.len());
-    edges.each(|edge| {
-        let mut first: Vec<(usize, u32)> = Vec::new();
-        for t in edge.halves().map(|half| half / 3) {
-            match first.iter().find(|entry| entry.0 == operands.of(t)) {
-                Some(&(_, other)) => _ = union.join(other, t),
-                None => first.push((operands.of(t), t)),
-            }
-        }
-    });
-    let mut number = vec![u32::MAX; mesh.triangles.len()];
-    let mut count = 0;
-    (0..mesh.triangles.len() as u32)
-        .map(|t| {
-            let root = union.root(t) as usize;
-            if number[root] == u32::MAX {
-                number[root] = count;
-                count += 1;
-            }
-            number[root]
-        })
-        .collect()
-}
-
-/// The signed volume of each shell, as it is.
-fn volumes(mesh: &TriMesh, shell: &[u32], shells: usize) -> Vec<f64> {
-    let mut volumes = vec![0.0; shells];
-    let centre = mesh.bounds().map_or(glam::DVec3::ZERO, |bounds| (bounds.min + bounds.max) / 2.0);
-    for (t, &s) in shell.iter().enumerate() {
-        let [a, b, c] = mesh.corners(t).map(|p| p - centre);
-        volumes[s as usize] += a.dot(b.cross(c)) / 6.0;
+/// The shells of operands, whose vertices are merged within each.
+fn shells_of(mesh: &TriMesh, operands: &Operands) -> Shells {
+    let mut merged = TriMesh::default();
+    for operand in 0..operands.count() {
+        let triangles = mesh.triangles[operands.range(operand)].to_vec();
+        merged.append(&TriMesh { positions: mesh.positions.clone(), triangles }.welded());
     }
-    volumes
+    shells(&merged, operands)
 }

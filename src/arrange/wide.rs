@@ -202,6 +202,12 @@ impl Wide {
     }
 }
 
+/// The sign of the determinant of three rows.
+pub(crate) fn sign_of_determinant([a, b, c]: &[[Wide; 3]; 3]) -> i32 {
+    let minor = |i: usize, j: usize| b[i].mul(&c[j]).sub(&b[j].mul(&c[i]));
+    a[0].mul(&minor(1, 2)).add(&a[1].mul(&minor(2, 0))).add(&a[2].mul(&minor(0, 1))).sign()
+}
+
 /// A Mersenne prime: points are found again by their coordinates modulo it.
 pub(crate) const PRIME: u64 = (1 << 61) - 1;
 

@@ -26,9 +26,6 @@ pub fn rows(pipeline: &Report) -> Vec<Row> {
         }
     };
     let mut rows = vec![cut + voxels];
-    if exact.turned > 0 {
-        rows.push(format!("{} inside out and taken the other way round", words::plural(exact.turned, "shell")));
-    }
     if exact.separated > 0 {
         let vertices = words::plural(exact.separated, "vertex");
         rows.push(format!("{vertices} moved apart by a hair, where bodies touch at an edge or a corner alone"));

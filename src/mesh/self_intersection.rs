@@ -27,15 +27,7 @@ const TASKS: usize = 512;
 /// The list may be as long as the square of the number of triangles; for meshes of unknown
 /// origin ask for [`intersecting_triangles`].
 pub fn self_intersections(mesh: &TriMesh, progress: &Progress) -> Result<Vec<[u32; 2]>, Stopped> {
-    let scene = Scene::new(mesh);
-    let lists = scene.tasks().into_par_iter().map(|task| {
-        let mut pairs = Pairs(Vec::new());
-        scene.visit(task, &mut pairs, progress).map(|()| pairs.0)
-    });
-    let mut pairs: Vec<[u32; 2]> = lists.collect::<Result<Vec<_>, _>>()?.concat();
-    pairs.extend(scene.copies.iter().map(|&[copy, first]| [first, copy]));
-    pairs.par_sort_unstable();
-    Ok(pairs)
+    pairs_of(&Scene::new(mesh), None, progress)
 }
 
 /// The same of the pairs in which one triangle at least is marked.
@@ -45,17 +37,14 @@ pub(crate) fn intersections_with(
     progress: &Progress,
 ) -> Result<Vec<[u32; 2]>, Stopped> {
     let scene = Scene::new(mesh);
-    let mut nodes: Vec<Vec<bool>> = Vec::new();
-    for (level, boxes) in scene.levels.iter().enumerate() {
-        let any = |n: usize| match level {
-            0 => scene.items[LEAF * n..(LEAF * (n + 1)).min(scene.items.len())].iter().any(|i| marked[i.id as usize]),
-            _ => nodes[level - 1][2 * n..(2 * n + 2).min(nodes[level - 1].len())].contains(&true),
-        };
-        let marks = (0..boxes.len()).map(any).collect();
-        nodes.push(marks);
-    }
+    let marks = Marks::new(&scene, marked);
+    pairs_of(&scene, Some(&marks), progress)
+}
+
+/// The pairs of a scene that intersect; with marks those in which one triangle at least is marked.
+fn pairs_of(scene: &Scene, marks: Option<&Marks<'_>>, progress: &Progress) -> Result<Vec<[u32; 2]>, Stopped> {
     let lists = scene.tasks().into_par_iter().map(|task| {
-        let mut sink = Marked { marked, nodes: &nodes, pairs: Vec::new() };
+        let mut sink = Pairs { marks, pairs: Vec::new() };
         scene.visit(task, &mut sink, progress).map(|()| sink.pairs)
     });
     let mut pairs: Vec<[u32; 2]> = lists.collect::<Result<Vec<_>, _>>()?.concat();
@@ -158,39 +147,43 @@ trait Sink {
     fn leave(&self, task: Task);
 }
 
-struct Pairs(Vec<[u32; 2]>);
-
-impl Sink for Pairs {
-    fn settled(&self, _: Task) -> bool {
-        false
-    }
-
-    fn known(&self, _: &Scene, _: [usize; 2]) -> bool {
-        false
-    }
-
-    fn hit(&mut self, scene: &Scene, items: [usize; 2]) {
-        let [a, b] = items.map(|i| scene.items[i].id);
-        self.0.push([a.min(b), a.max(b)]);
-    }
-
-    fn leave(&self, _: Task) {}
+/// Which triangles are marked, and which subtrees have such triangles.
+struct Marks<'a> {
+    triangles: &'a [bool],
+    nodes: Vec<Vec<bool>>,
 }
 
-/// Pairs of which one triangle at least is marked, or lies in a marked subtree.
-struct Marked<'a> {
-    marked: &'a [bool],
-    nodes: &'a [Vec<bool>],
+impl<'a> Marks<'a> {
+    fn new(scene: &Scene, triangles: &'a [bool]) -> Self {
+        let mut nodes: Vec<Vec<bool>> = Vec::new();
+        for (level, boxes) in scene.levels.iter().enumerate() {
+            let any = |n: usize| match level {
+                0 => {
+                    let items = &scene.items[LEAF * n..(LEAF * (n + 1)).min(scene.items.len())];
+                    items.iter().any(|item| triangles[item.id as usize])
+                }
+                _ => nodes[level - 1][2 * n..(2 * n + 2).min(nodes[level - 1].len())].contains(&true),
+            };
+            let marks = (0..boxes.len()).map(any).collect();
+            nodes.push(marks);
+        }
+        Self { triangles, nodes }
+    }
+}
+
+/// The pairs that one task has found.
+struct Pairs<'a> {
+    marks: Option<&'a Marks<'a>>,
     pairs: Vec<[u32; 2]>,
 }
 
-impl Sink for Marked<'_> {
+impl Sink for Pairs<'_> {
     fn settled(&self, Task { level, nodes }: Task) -> bool {
-        nodes.iter().all(|&n| !self.nodes[level][n])
+        self.marks.is_some_and(|marks| nodes.iter().all(|&n| !marks.nodes[level][n]))
     }
 
     fn known(&self, scene: &Scene, items: [usize; 2]) -> bool {
-        items.iter().all(|&i| !self.marked[scene.items[i].id as usize])
+        self.marks.is_some_and(|marks| items.iter().all(|&i| !marks.triangles[scene.items[i].id as usize]))
     }
 
     fn hit(&mut self, scene: &Scene, items: [usize; 2]) {

@@ -22,3 +22,11 @@ pub(crate) fn welded_triangles(mesh: &TriMesh) -> Vec<[u32; 3]> {
 pub(crate) fn has_repeated_index([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
+
+/// The vertices in increasing order, and whether that is an even permutation.
+pub(crate) fn canonical(t: [u32; 3]) -> ([u32; 3], bool) {
+    let mut s = t;
+    s.sort_unstable();
+    let even = [[0, 1, 2], [1, 2, 0], [2, 0, 1]].iter().any(|p| [t[p[0]], t[p[1]], t[p[2]]] == s);
+    (s, even)
+}

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use crate::mesh::TriMesh;
 use crate::mesh::edges::{Edges, Union};
+use crate::mesh::weld::canonical;
 
 /// Edges with more triangles than this have no say about membranes.
 const MOST_ON_AN_EDGE: usize = 16;
@@ -68,14 +69,6 @@ fn has_area(mesh: &TriMesh, t: u32) -> bool {
     let [a, b, c] = mesh.corners(t as usize);
     let n = (b - a).cross(c - a);
     n != DVec3::ZERO && n.is_finite()
-}
-
-/// The vertices in increasing order, and whether that is an even permutation.
-fn canonical(t: [u32; 3]) -> ([u32; 3], bool) {
-    let mut s = t;
-    s.sort_unstable();
-    let even = [[0, 1, 2], [1, 2, 0], [2, 0, 1]].iter().any(|p| [t[p[0]], t[p[1]], t[p[2]]] == s);
-    (s, even)
 }
 
 /// Drops groups of both-sided triangles whose rims are closed without them.

@@ -6,7 +6,7 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::{Options, Precision, StandingReport, TriangleSource};
-use crate::fit::{SimpleSource, rounded, simplified_source};
+use crate::fit::{FitOptions, SimpleSource, rounded, simplified_source};
 use crate::ldi::{Expression, Operands};
 use crate::mesh::TriMesh;
 use crate::mesh::edges::Union;
@@ -76,7 +76,8 @@ impl Apart {
             true => standing(&mesh, &shells, &contacts, &asked, progress)?,
             false => vec![Fate::Open; shells.list.len()],
         };
-        let buried = match worth_looking {
+        // Only shells that nothing is known of are asked about.
+        let buried = match worth_looking && truth.iter().any(|fate| fate.is_open()) {
             true => buried(&mesh, &shells, &contacts, &asked, progress)?,
             false => vec![false; shells.list.len()],
         };
@@ -210,11 +211,10 @@ impl Apart {
             let own: Vec<(u32, bool)> = kept.iter().copied().filter(|&(t, _)| soup.operands.of(t) == operand).collect();
             standing.add(operand, input, soup, &own, options.precision);
         }
-        let tolerance = options.fit.map_or(0.0, |fit| fit.simplify_kept);
-        match tolerance > 0.0 {
-            true => standing.simplified(soup.classes(classes), &kept, options, h, progress),
-            false => Ok(standing),
-        }
+        let Some(fit) = options.fit.filter(|fit| fit.simplify_kept > 0.0) else { return Ok(standing) };
+        let of_soup = soup.classes(classes);
+        let classes = if of_soup.is_empty() { of_soup } else { kept.iter().map(|k| of_soup[k.0 as usize]).collect() };
+        standing.simplified(classes, &fit, h, progress)
     }
 }
 
@@ -293,17 +293,14 @@ impl Standing {
         self.sources.extend(own.iter().map(source));
     }
 
-    /// The same with flat parts simplified, where that leaves a valid solid.
-    fn simplified(
+    /// The same with flat parts simplified, where that leaves a valid solid. `classes`: a number for each triangle, or none at all.
+    pub(super) fn simplified(
         self,
         classes: Vec<u32>,
-        kept: &[(u32, bool)],
-        options: &Options,
+        fit: &FitOptions,
         h: f64,
         progress: &Progress,
     ) -> Result<Self, Stopped> {
-        let Some(fit) = &options.fit else { return Ok(self) };
-        let classes = if classes.is_empty() { classes } else { kept.iter().map(|k| classes[k.0 as usize]).collect() };
         match simplified_source(&self.mesh, classes, h, fit, progress)? {
             None => Ok(self),
             Some(SimpleSource { mesh, of }) => {

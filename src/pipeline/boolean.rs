@@ -119,7 +119,7 @@ impl Task<'_> {
         }
         if let Exact::Open { closed, crosses } = exact {
             if meshes.len() > 1 {
-                if let Some(draft) = self.sealed(&closed, &mut stages)? {
+                if let Some(draft) = self.sealed(&closed, &rest, &mut stages)? {
                     return Ok(account::finished(draft, &apart, stages));
                 }
             } else if crosses && let Some(mut draft) = self.cut_first(&rest, &mut stages)? {

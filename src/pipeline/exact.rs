@@ -1,17 +1,12 @@
 //! The exact way: shells that touch, cut where they cross and decided by winding numbers, without rays and voxels.
 
-use glam::{DVec3, IVec3};
-
 use super::apart::{Apart, Standing, touch};
-use super::rebuild::Job;
+use super::rebuild::{Job, joined};
 use super::stages::Stages;
-use super::{BooleanError, Draft, Method, NothingEnclosed, Report, TriangleSource};
+use super::{BooleanError, Draft, Method, NothingEnclosed, Precision, TriangleSource};
 use crate::arrange::{ArrangeError, ArrangeOptions, Arranged, arrange};
-use crate::fit::{SimpleSource, simplified_source};
-use crate::lattice::Lattice;
 use crate::ldi::Operands;
 use crate::mesh::TriMesh;
-use crate::pipeline::Precision;
 use crate::progress::Stage;
 use crate::survey::Soup;
 
@@ -90,27 +85,21 @@ impl Job<'_> {
             return Ok(Exact::None);
         }
         stages.begin(Stage::Arrange)?;
-        let mut refused = match self.arranged(&Pile::given(operands, apart)) {
-            Ok(draft) => return self.joined(self.simplified(draft.cleaned(rest))?, standing),
-            Err(ArrangeError::Stopped(stopped)) => return Err(stopped.into()),
-            Err(error) => error,
-        };
+        let mut tried = self.arranged(&Pile::given(operands, apart));
         // Neighbours that face opposite ways, or copies, may be all that is wrong.
         let changed = rest.reports.iter().any(|r| r.flipped_in_patches + r.duplicates_dropped + r.both_sided > 0);
-        if changed && matches!(refused, ArrangeError::Open { .. }) {
-            refused = match self.arranged(&Pile::oriented(rest)) {
-                Ok(draft) => return self.joined(self.simplified(draft.cleaned(rest))?, standing),
-                Err(ArrangeError::Stopped(stopped)) => return Err(stopped.into()),
-                Err(error) => error,
-            };
+        if changed && matches!(tried, Err(ArrangeError::Open { .. })) {
+            tried = self.arranged(&Pile::oriented(rest));
         }
-        match refused {
-            refused if method == Method::Exact => Err(BooleanError::NotExact(refused)),
-            ArrangeError::Open { closed, cut, rims_cut, .. } => {
+        match tried {
+            Ok(draft) => self.beside_standing(self.simplified(draft.cleaned(rest))?, standing),
+            Err(ArrangeError::Stopped(stopped)) => Err(stopped.into()),
+            Err(refused) if method == Method::Exact => Err(BooleanError::NotExact(refused)),
+            Err(ArrangeError::Open { closed, cut, rims_cut, .. }) => {
                 // Rims that run into other surfaces are cracks that overlap: cut, they would leave flaps.
                 Ok(Exact::Open { closed, crosses: cut > 0 && rims_cut == 0 })
             }
-            _ => Ok(Exact::None),
+            Err(_) => Ok(Exact::None),
         }
     }
 
@@ -127,10 +116,10 @@ impl Job<'_> {
         };
         let operands = Operands::new(pile.counts.iter().copied()).with_inside(options.inside);
         let Arranged { mesh, sources, report } = arrange(&pile.mesh, &operands, &asked, progress)?;
-        let lattice = Lattice { origin: DVec3::ZERO, h: self.h, dims: IVec3::ZERO };
-        let report = Report { voxel: self.h, exact: Some(report), ..Report::default() };
         let sources = sources.into_iter().map(|t| pile.sources[t as usize]).collect();
-        Ok(Draft { mesh, sources, lattice, report })
+        let mut draft = Draft { mesh, sources, ..Draft::without_voxels(self.h) };
+        draft.report.exact = Some(report);
+        Ok(draft)
     }
 
     /// The numbers of the operands' triangles that others lie on; nothing where there are none.
@@ -149,17 +138,13 @@ impl Job<'_> {
     fn simplified(&self, draft: Draft) -> Result<Draft, BooleanError> {
         let Some(fit) = self.options.fit.filter(|fit| fit.simplify_kept > 0.0) else { return Ok(draft) };
         let classes = self.classes_of(&draft.sources);
-        match simplified_source(&draft.mesh, classes, self.h, &fit, self.progress)? {
-            None => Ok(draft),
-            Some(SimpleSource { mesh, of }) => {
-                let source = |t: Option<u32>| t.map_or(TriangleSource::Closed, |t| draft.sources[t as usize]);
-                Ok(Draft { mesh, sources: of.into_iter().map(source).collect(), ..draft })
-            }
-        }
+        let Draft { mesh, sources, lattice, report } = draft;
+        let Standing { mesh, sources } = Standing { mesh, sources }.simplified(classes, &fit, self.h, self.progress)?;
+        Ok(Draft { mesh, sources, lattice, report })
     }
 
     /// What stands with what was cut beside it, unless rounding made the two touch.
-    fn joined(&self, draft: Draft, standing: &Standing) -> Result<Exact, BooleanError> {
+    fn beside_standing(&self, draft: Draft, standing: &Standing) -> Result<Exact, BooleanError> {
         if draft.mesh.triangles.is_empty() && standing.mesh.triangles.is_empty() {
             let alone = self.expression.operand_count() == 1;
             let why = if alone { NothingEnclosed::Nothing } else { NothingEnclosed::NoCommonPart };
@@ -171,9 +156,6 @@ impl Job<'_> {
                 _ => Ok(Exact::None),
             };
         }
-        let Standing { mut mesh, mut sources } = standing.clone();
-        mesh.append(&draft.mesh);
-        sources.extend(draft.sources);
-        Ok(Exact::Done(Box::new(Draft { mesh, sources, ..draft })))
+        Ok(Exact::Done(Box::new(joined(standing.clone(), draft))))
     }
 }

@@ -1,11 +1,14 @@
 //! What comes out of a pipeline.
 
+use glam::{DVec3, IVec3};
+
 use super::frame::Frame;
 use super::kind::kinds_of;
 use super::{Operand, Report, TriangleCounts, TriangleKind, TriangleSource, colours, textures};
 use crate::io::{Colours, TextureMap};
 use crate::lattice::Lattice;
 use crate::mesh::{Solid, SolidError, TriMesh};
+use crate::orient::OrientReport;
 use crate::progress::Progress;
 use crate::survey::Soup;
 
@@ -36,9 +39,27 @@ pub(super) struct Draft {
 }
 
 impl Draft {
+    /// An empty one, made without voxels; `h`: those that there would have been, model units.
+    pub(super) fn without_voxels(h: f64) -> Self {
+        let lattice = Lattice { origin: DVec3::ZERO, h, dims: IVec3::ZERO };
+        let report = Report { voxel: h, ..Report::default() };
+        Self { mesh: TriMesh::default(), sources: Vec::new(), lattice, report }
+    }
+
     /// The same with what cleaning did to the operands.
-    pub(super) fn cleaned(mut self, soup: &Soup) -> Self {
-        self.report.orient = soup.reports.clone();
+    pub(super) fn cleaned(self, soup: &Soup) -> Self {
+        self.oriented(soup.reports.clone())
+    }
+
+    /// The same with what was done to each operand, beside the shells that were turned over when it was cut.
+    pub(super) fn oriented(mut self, mut reports: Vec<OrientReport>) -> Self {
+        if let Some(exact) = &self.report.exact {
+            for ((report, shells), triangles) in reports.iter_mut().zip(&exact.turned).zip(&exact.turned_triangles) {
+                report.flipped_patches += shells;
+                report.flipped_by_rays += triangles;
+            }
+        }
+        self.report.orient = reports;
         self
     }
 

@@ -1,7 +1,5 @@
 //! What rays and voxels make of the shells that do not stand by themselves.
 
-use glam::{DVec3, IVec3};
-
 use super::account::{refuse_scattered, why_nothing};
 use super::apart::{Standing, touch};
 use super::crumbs::without_crumbs;
@@ -65,7 +63,7 @@ impl Job<'_> {
     fn if_any(&self, rest: &Soup, h: f64, stages: &mut Stages<'_>) -> Result<Draft, BooleanError> {
         match self.alone(rest.clone(), h, stages) {
             Err(BooleanError::Nothing(why)) => {
-                let mut nothing = nothing(rest, h);
+                let mut nothing = Draft::without_voxels(h).cleaned(rest);
                 nothing.report.warnings.push(Warning::NothingMore(why));
                 Ok(nothing)
             }
@@ -77,7 +75,7 @@ impl Job<'_> {
     pub(super) fn nothing_beside(&self, rest: &Soup, standing: Standing) -> Result<Draft, BooleanError> {
         match standing.mesh.triangles.is_empty() {
             true => Err(NothingEnclosed::NoCommonPart.into()),
-            false => Ok(joined(standing, nothing(rest, self.h))),
+            false => Ok(joined(standing, Draft::without_voxels(self.h).cleaned(rest))),
         }
     }
 
@@ -131,15 +129,8 @@ impl Job<'_> {
     }
 }
 
-/// An empty draft: nothing of a soup.
-fn nothing(rest: &Soup, h: f64) -> Draft {
-    let lattice = Lattice { origin: DVec3::ZERO, h, dims: IVec3::ZERO };
-    let report = Report { voxel: h, orient: rest.reports.clone(), ..Report::default() };
-    Draft { mesh: TriMesh::default(), sources: Vec::new(), lattice, report }
-}
-
 /// What stands, and after it what was made.
-fn joined(standing: Standing, made: Draft) -> Draft {
+pub(super) fn joined(standing: Standing, made: Draft) -> Draft {
     let Standing { mut mesh, mut sources } = standing;
     mesh.append(&made.mesh);
     sources.extend(made.sources);

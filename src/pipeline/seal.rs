@@ -54,14 +54,22 @@ impl Task<'_> {
     }
 
     /// The exact boolean of operands of which some have holes: those are repaired by themselves, as they would be alone; `None` where one
-    /// encloses nothing by itself, or where there is no exact result of what they make.
-    pub(super) fn sealed(&self, closed: &[bool], stages: &mut Stages<'_>) -> Result<Option<Draft>, BooleanError> {
+    /// encloses nothing by itself, or where there is no exact result of what they make. `given`: all of them as they were cleaned.
+    pub(super) fn sealed(
+        &self,
+        closed: &[bool],
+        given: &Soup,
+        stages: &mut Stages<'_>,
+    ) -> Result<Option<Draft>, BooleanError> {
         let Self { meshes, classes, expression, options, h, progress } = *self;
         let mut pile = Pile::default();
         let mut report: Option<(Report, Lattice)> = None;
+        let mut orient = given.reports.clone();
         for (n, &mesh) in meshes.iter().enumerate() {
             let operand = n as u32;
             if closed[n] {
+                // Which of its shells are turned over is found when it is cut.
+                (orient[n].flipped_patches, orient[n].flipped_by_rays) = (0, 0);
                 let all =
                     (0..mesh.triangles.len() as u32).map(|t| (t, TriangleSource::Operand { operand, triangle: t }));
                 pile.add(mesh, all);
@@ -76,11 +84,14 @@ impl Task<'_> {
                 h,
                 progress,
             };
-            let whole = match task.draft() {
+            let mut whole = match task.draft() {
                 Ok(whole) => whole,
                 Err(BooleanError::Nothing(_)) => return Ok(None),
                 Err(error) => return Err(error),
             };
+            if let Some(own) = whole.report.orient.pop() {
+                orient[n] = own;
+            }
             let own = |source: &TriangleSource| match *source {
                 TriangleSource::Operand { triangle, .. } => TriangleSource::Operand { operand, triangle },
                 TriangleSource::Closed => TriangleSource::Closed,
@@ -103,8 +114,11 @@ impl Task<'_> {
             Err(_) => return Ok(None),
         };
         Ok(Some(match report {
-            Some((report, lattice)) => Draft { report: Report { exact: cut.report.exact, ..report }, lattice, ..cut },
-            None => cut,
+            Some((report, lattice)) => {
+                let report = Report { exact: cut.report.exact, ..report };
+                Draft { report, lattice, ..cut }.oriented(orient)
+            }
+            None => cut.oriented(orient),
         }))
     }
 }

@@ -105,7 +105,7 @@ fn what_became_of_the_shells_is_told() {
     inside_out.triangles.iter_mut().for_each(|triangle| triangle.swap(0, 1));
     put(&folder, "mixed.off", &[cube([0.0; 3], 4.0), inside_out]);
     let run = run_in(&folder, "repair OUT/mixed.off -o OUT/b.off").exits(0);
-    run.says(&["1 shell inside out and taken the other way round"]);
+    run.says(&["1 patch turned over as a whole"]);
     assert!((volume(&folder, "b.off") / 120.0 - 1.0).abs() < 1e-12);
     // Two that touch at an edge alone.
     put(&folder, "edge.off", &[cube([0.0; 3], 4.0), cube([4.0, 4.0, 0.0], 4.0)]);

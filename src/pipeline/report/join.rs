@@ -5,27 +5,28 @@ use crate::fit::FitReport;
 use crate::vote::VoteReport;
 
 impl Report {
-    /// This and the report of another operand. Sizes of lattices are those of this one.
+    /// This and the report of another operand, but for what was done to either. Sizes of lattices are those of this one.
     pub(crate) fn with(mut self, other: Self) -> Self {
         self.lattice |= other.lattice;
         self.standing = self.standing.with(other.standing);
-        self.topology = match (self.topology, other.topology) {
-            (Some(one), Some(two)) => Some(one.with(two)),
-            (one, two) => one.or(two),
-        };
-        self.orient.extend(other.orient);
+        self.topology = both(self.topology, other.topology, TopologyReport::with);
         self.ldi = self.ldi.with(other.ldi);
         self.vote = with_votes(self.vote, other.vote);
         self.thin = self.thin.with(other.thin);
-        self.fit = match (self.fit, other.fit) {
-            (Some(one), Some(two)) => Some(with_fit(one, two)),
-            (one, two) => one.or(two),
-        };
+        self.fit = both(self.fit, other.fit, with_fit);
         self.crumbs = Dropped::and(self.crumbs, other.crumbs);
         self.cut += other.cut;
         self.closed_triangles += other.closed_triangles;
         self.warnings.extend(other.warnings);
         self
+    }
+}
+
+/// Both together, or the one that there is.
+fn both<T>(one: Option<T>, two: Option<T>, with: impl FnOnce(T, T) -> T) -> Option<T> {
+    match (one, two) {
+        (Some(one), Some(two)) => Some(with(one, two)),
+        (one, two) => one.or(two),
     }
 }
 

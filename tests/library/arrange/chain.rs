@@ -1,6 +1,6 @@
 //! A hundred operations, one after another and in one expression.
 
-use super::support::{cases, coarse, result, volume};
+use super::support::{cases, coarse, prism, result, volume};
 use glam::DVec3;
 use meshwright::ldi::Expression;
 use meshwright::mesh::TriMesh;
@@ -21,18 +21,7 @@ fn count() -> u32 {
 /// A regular prism through the plate, around the middle of a square of the grid.
 fn drill(n: u32) -> TriMesh {
     let middle = DVec3::new(f64::from(n % 10) + 1.0, f64::from(n / 10) + 1.0, 0.0);
-    let angle = |k: u32| std::f64::consts::TAU * (f64::from(k) + 0.3) / f64::from(SIDES);
-    let ring =
-        |z: f64| (0..SIDES).map(move |k| middle + DVec3::new(RADIUS * angle(k).cos(), RADIUS * angle(k).sin(), z));
-    let mut mesh = TriMesh { positions: ring(-1.0).chain(ring(2.0)).collect(), triangles: Vec::new() };
-    for k in 0..SIDES {
-        let next = (k + 1) % SIDES;
-        mesh.triangles.extend([[k, next, next + SIDES], [k, next + SIDES, k + SIDES]]);
-    }
-    for k in 1..SIDES - 1 {
-        mesh.triangles.extend([[0, k + 1, k], [SIDES, SIDES + k, SIDES + k + 1]]);
-    }
-    mesh
+    prism(middle, RADIUS, [-1.0, 2.0], SIDES, 0.3)
 }
 
 fn plate() -> TriMesh {

@@ -16,6 +16,22 @@ pub fn asked(expression: &Expression) -> ArrangeOptions<'_> {
     ArrangeOptions { expression, orient: OrientMode::Keep, single: false, suspects: &[], classes: &[] }
 }
 
+/// A regular prism along z, with a corner so many sides on from the x axis.
+pub fn prism(middle: DVec3, radius: f64, heights: [f64; 2], sides: u32, turned: f64) -> TriMesh {
+    let angle = |k: u32| std::f64::consts::TAU * (f64::from(k) + turned) / f64::from(sides);
+    let ring =
+        |z: f64| (0..sides).map(move |k| middle + DVec3::new(radius * angle(k).cos(), radius * angle(k).sin(), z));
+    let mut mesh = TriMesh { positions: heights.into_iter().flat_map(ring).collect(), triangles: Vec::new() };
+    for k in 0..sides {
+        let next = (k + 1) % sides;
+        mesh.triangles.extend([[k, next, next + sides], [k, next + sides, k + sides]]);
+    }
+    for k in 1..sides - 1 {
+        mesh.triangles.extend([[0, k + 1, k], [sides, sides + k, sides + k + 1]]);
+    }
+    mesh
+}
+
 /// All triangles of operands, one operand after another.
 pub fn piled(operands: &[TriMesh]) -> (TriMesh, Operands) {
     let mut mesh = TriMesh::default();

@@ -2,7 +2,7 @@
 //!
 //! `cargo test --test library arrange::touching -- --nocapture` prints the table of `docs/robustness.md`.
 
-use super::support::{moved, volume};
+use super::support::{self, moved, volume};
 use crate::common::proofs::state;
 use crate::common::shapes::{ball, cuboid, torus, turned};
 use glam::{DQuat, DVec3};
@@ -60,17 +60,7 @@ fn unit(at: [f64; 3]) -> TriMesh {
 
 /// A regular prism of radius 1 around z from 0 to 1, with a corner on the x axis, or turned by half a side.
 fn prism(sides: u32, half: bool) -> TriMesh {
-    let angle = |k: u32| std::f64::consts::TAU * (f64::from(k) + if half { 0.5 } else { 0.0 }) / f64::from(sides);
-    let ring = |z: f64| (0..sides).map(move |k| DVec3::new(angle(k).cos(), angle(k).sin(), z));
-    let mut mesh = TriMesh { positions: ring(0.0).chain(ring(1.0)).collect(), triangles: Vec::new() };
-    for k in 0..sides {
-        let next = (k + 1) % sides;
-        mesh.triangles.extend([[k, next, next + sides], [k, next + sides, k + sides]]);
-    }
-    for k in 1..sides - 1 {
-        mesh.triangles.extend([[0, k + 1, k], [sides, sides + k, sides + k + 1]]);
-    }
-    mesh
+    support::prism(DVec3::ZERO, 1.0, [0.0, 1.0], sides, if half { 0.5 } else { 0.0 })
 }
 
 /// Two bodies that have at most a surface in common.
