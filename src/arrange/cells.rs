@@ -46,10 +46,13 @@ pub(crate) fn steps(refined: &Refined, piece: u32, owner: &impl Owner, mut visit
 }
 
 /// The edges around which the triangles of some operand do not close, in the order of their ends. `edges`: those of the pieces.
-pub(crate) fn gaps(refined: &Refined, edges: &Edges<'_>, owner: &impl Owner) -> Vec<Gap> {
+pub(crate) fn gaps(refined: &Refined, edges: &Edges<'_>, owner: &impl Owner, ring: &Ring<'_>) -> Vec<Gap> {
     let mut found = Vec::new();
     let mut sums: Vec<(u32, i32)> = Vec::new();
     edges.each(|edge| {
+        if ring.is_rim(refined, &edge) {
+            return;
+        }
         sums.clear();
         for half in edge.halves() {
             let way = if edges.runs_up(half) { 1 } else { -1 };
@@ -64,14 +67,41 @@ pub(crate) fn gaps(refined: &Refined, edges: &Edges<'_>, owner: &impl Owner) -> 
     found
 }
 
+/// The triangles around a part of a surface that is valid beyond it: they touch nothing, the outside is in front of them, and the solid behind.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Ring<'a> {
+    /// For each triangle whether it is one of them; empty where a surface is whole.
+    pub(crate) triangles: &'a [bool],
+}
+
+impl Ring<'_> {
+    fn has(&self, refined: &Refined, piece: u32) -> bool {
+        let Some(cover) = refined.covers(&refined.pieces[piece as usize]).first() else { return false };
+        self.triangles.get(cover.triangle as usize) == Some(&true)
+    }
+
+    /// Whether the surface may go on beyond this edge.
+    fn is_rim(&self, refined: &Refined, edge: &Edge<'_>) -> bool {
+        !self.triangles.is_empty() && edge.halves().all(|half| self.has(refined, half / 3))
+    }
+}
+
 impl Cells {
-    /// The cells between the pieces, which must close around each of their `edges`.
-    pub(crate) fn of(refined: &Refined, edges: &Edges<'_>, progress: &Progress) -> Result<Self, Stopped> {
+    /// The cells between the pieces, which must close around each of their `edges`, but for the rim of a ring.
+    pub(crate) fn of(
+        refined: &Refined,
+        edges: &Edges<'_>,
+        ring: &Ring<'_>,
+        progress: &Progress,
+    ) -> Result<Self, Stopped> {
         progress.check()?;
         let pieces = refined.pieces.len() as u32;
         let mut sides = Union::new(2 * pieces as usize);
         let mut around: Vec<Spoke> = Vec::new();
         edges.each(|edge| {
+            if ring.is_rim(refined, &edge) {
+                return;
+            }
             around.clear();
             around.extend(edge.halves().map(|half| Spoke { piece: half / 3, up: edges.runs_up(half), normal: [0; 3] }));
             if around.len() > 2 {
@@ -97,10 +127,18 @@ impl Cells {
         }
         let mut doors: Vec<([Cell; 2], u32)> = first.into_iter().collect();
         doors.sort_unstable();
-        let mut parts = Union::new(count);
-        doors.iter().for_each(|&([a, b], _)| _ = parts.join(a, b));
-        let part_of: Vec<u32> = beside.iter().map(|pair| parts.root(pair[0])).collect();
-        let anchors = anchors(refined, &part_of, &beside, progress)?;
+        let anchors = match ring.triangles.is_empty() {
+            true => {
+                let mut parts = Union::new(count);
+                doors.iter().for_each(|&([a, b], _)| _ = parts.join(a, b));
+                let part_of: Vec<u32> = beside.iter().map(|pair| parts.root(pair[0])).collect();
+                anchors(refined, &part_of, &beside, progress)?
+            }
+            false => {
+                let known = (0..pieces).filter(|&piece| ring.has(refined, piece));
+                known.map(|piece| Anchor { cell: beside[piece as usize][0], crossed: Vec::new() }).collect()
+            }
+        };
         Ok(Self { beside, count, doors, anchors })
     }
 
@@ -114,15 +152,22 @@ impl Cells {
             ways.extend([(front, back, piece, 1), (back, front, piece, -1)]);
         }
         ways.sort_unstable();
+        let mut row = vec![0i32; operands];
         for anchor in &self.anchors {
-            let start = anchor.cell as usize;
-            if std::mem::replace(&mut known[start], true) {
-                continue;
-            }
+            row.fill(0);
             for &Crossed { cover, sign } in &anchor.crossed {
                 let sign = if cover.reversed == owner.is_turned(cover.triangle) { sign } else { -sign };
-                winding[start * operands + owner.operand(cover.triangle) as usize] += sign;
+                row[owner.operand(cover.triangle) as usize] += sign;
             }
+            let start = anchor.cell as usize;
+            let own = start * operands..(start + 1) * operands;
+            if std::mem::replace(&mut known[start], true) {
+                if winding[own] != row {
+                    return None;
+                }
+                continue;
+            }
+            winding[own].copy_from_slice(&row);
             let mut stack = vec![anchor.cell];
             while let Some(from) = stack.pop() {
                 let begin = ways.partition_point(|way| way.0 < from);

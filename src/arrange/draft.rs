@@ -32,6 +32,8 @@ pub(crate) struct Draft {
     pub(crate) triangles: Vec<[u32; 3]>,
     /// A triangle of the input that each triangle lies on.
     pub(crate) sources: Vec<u32>,
+    /// For each triangle whether it may cross others; two for which that is not so do not cross each other.
+    pub(crate) fresh: Vec<bool>,
 }
 
 /// What the vertices of an arrangement are, and what points that are made snap to.
@@ -39,6 +41,8 @@ pub(crate) struct Rounding<'a> {
     pub(crate) fine: &'a Fine,
     /// For each vertex of the arrangement what it is.
     pub(crate) kinds: &'a [Kind],
+    /// The positions of the input's vertices as the result may have them, model units.
+    pub(crate) input: &'a [DVec3],
     /// Points that are made near a vertex become it.
     pub(crate) near: Option<&'a Near>,
     /// Whether points that are made stay where they are exactly.
@@ -65,8 +69,7 @@ impl Draft {
             });
             let [a, b, c] = corners;
             if a != b && b != c && c != a {
-                draft.triangles.push(corners);
-                draft.sources.push(source(face.cover.triangle));
+                draft.push(corners, source(face.cover.triangle), true);
             }
         }
         draft.cancel();
@@ -79,11 +82,25 @@ impl Draft {
         self.places.len() as u32 - 1
     }
 
+    pub(crate) fn push(&mut self, corners: [u32; 3], source: u32, fresh: bool) {
+        self.triangles.push(corners);
+        self.sources.push(source);
+        self.fresh.push(fresh);
+    }
+
+    /// Gives a triangle other corners.
+    pub(crate) fn change(&mut self, triangle: usize, corners: [u32; 3]) {
+        self.fresh[triangle] |= self.triangles[triangle] != corners;
+        self.triangles[triangle] = corners;
+    }
+
     /// Makes one vertex of those at one place, and takes out what that leaves without area.
     pub(crate) fn weld(&mut self) {
         let mut at: FxHashMap<[i32; 3], u32> = FxHashMap::default();
         let first: Vec<u32> = (0..).zip(&self.places).map(|(v, &place)| *at.entry(place).or_insert(v)).collect();
-        self.triangles.iter_mut().flatten().for_each(|v| *v = first[*v as usize]);
+        for t in 0..self.triangles.len() {
+            self.change(t, self.triangles[t].map(|v| first[v as usize]));
+        }
         let keep: Vec<bool> = self.triangles.iter().map(|[a, b, c]| a != b && b != c && c != a).collect();
         self.retain(&keep);
         self.cancel();
@@ -115,10 +132,13 @@ impl Draft {
     }
 
     fn retain(&mut self, keep: &[bool]) {
-        let mut each = keep.iter();
-        self.triangles.retain(|_| each.next() == Some(&true));
-        let mut each = keep.iter();
-        self.sources.retain(|_| each.next() == Some(&true));
+        fn kept<T>(list: &mut Vec<T>, keep: &[bool]) {
+            let mut each = keep.iter();
+            list.retain(|_| each.next() == Some(&true));
+        }
+        kept(&mut self.triangles, keep);
+        kept(&mut self.sources, keep);
+        kept(&mut self.fresh, keep);
     }
 
     /// The mesh with the numbers of the result, model units. `input`: the positions of the input's vertices as the result may have them.
@@ -136,13 +156,21 @@ impl Draft {
 impl Rounding<'_> {
     /// Where a point goes, and what it is there.
     fn rounded(&self, refined: &Refined, point: u32) -> ([i32; 3], Kind) {
-        let settled = |v: [i32; 3]| self.fine.settled(DVec3::from_array(v.map(f64::from)));
+        let vertex = |v: u32, place: [i32; 3]| {
+            let kind = self.kinds[v as usize];
+            // Where the result has it, which need not be what its place would be rounded to.
+            let at = match kind {
+                Kind::Own(own) => self.fine.place(self.input[own as usize]),
+                _ => place,
+            };
+            (self.fine.settled(DVec3::from_array(at.map(f64::from))), kind)
+        };
         if let Some(place) = refined.points.vertex(point) {
-            return (settled(place), self.kinds[point as usize]);
+            return vertex(point, place);
         }
         let at = refined.points.approximate(point);
         if let Some(v) = self.near.and_then(|near| near.nearest(at)) {
-            return (settled(refined.facets.vertices[v as usize]), self.kinds[v as usize]);
+            return vertex(v, refined.facets.vertices[v as usize]);
         }
         (self.fine.settled(at), if self.exact { Kind::Made(at) } else { Kind::Moved })
     }

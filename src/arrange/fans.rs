@@ -168,7 +168,11 @@ impl Draft {
         }
         for (corners, place) in moves {
             let v = self.add(place, Kind::Moved);
-            corners.iter().for_each(|&corner| self.triangles[corner as usize / 3][corner as usize % 3] = v);
+            for corner in corners.into_iter().map(|corner| corner as usize) {
+                let mut triangle = self.triangles[corner / 3];
+                triangle[corner % 3] = v;
+                self.change(corner / 3, triangle);
+            }
         }
     }
 
@@ -272,10 +276,7 @@ impl Draft {
             parts.push([ring[(k + n - 1) % n], ring[k], ring[(k + 1) % n]]);
             ring.remove(k);
         }
-        self.triangles[t] = [ring[0], ring[1], ring[2]];
-        for part in parts {
-            self.triangles.push(part);
-            self.sources.push(source);
-        }
+        self.change(t, [ring[0], ring[1], ring[2]]);
+        parts.into_iter().for_each(|part| self.push(part, source, true));
     }
 }

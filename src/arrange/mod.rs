@@ -14,6 +14,7 @@
 //!
 //! The vertices are then rounded to numbers that a file holds, and what crosses for that is united with itself again (`round`).
 
+mod again;
 mod anchor;
 mod cells;
 mod draft;

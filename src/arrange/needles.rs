@@ -70,8 +70,8 @@ impl Draft {
             if !free || c == d || is_edge {
                 continue;
             }
-            self.triangles[t as usize] = [a, d, c];
-            self.triangles[other as usize] = [d, b, c];
+            self.change(t as usize, [a, d, c]);
+            self.change(other as usize, [d, b, c]);
             [a, b, c, d].iter().for_each(|&v| used[v as usize] = true);
         }
     }

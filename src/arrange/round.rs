@@ -6,27 +6,23 @@
 
 use glam::DVec3;
 
-use super::cells::{Cells, Owner, gaps};
+use super::again::united;
 use super::draft::{Draft, Kind, Rounding};
-use super::extract::{Face, extract};
-use super::facets::Facets;
+use super::extract::Face;
 use super::fine::Fine;
-use super::merge::merge;
-use super::near::Near;
 use super::options::ArrangeOptions;
-use super::refine::{Refined, refine};
-use crate::mesh::edges::Edges;
+use super::refine::Refined;
 use crate::mesh::{TriMesh, flat_triangles, intersections_with, self_intersections};
 use crate::progress::{Progress, Stopped};
 
 /// How often a surface is united with itself before another way is tried.
-const ROUNDS: u32 = 8;
+const ROUNDS: u32 = 12;
 
 /// A surface that grows by more than this factor does not get better.
 const GROWTH: usize = 2;
 
 /// Neither does one with more than this many times the fewest triangles that crossed before, and some to spare.
-const WORSE: usize = 4;
+const WORSE: usize = 8;
 
 /// One way of going on where triangles cross once rounded. Lengths are in the coarsest numbers that coordinates along each axis may have.
 ///
@@ -43,7 +39,7 @@ struct Way {
     needle: f64,
 }
 
-const WAYS: [Way; 7] = [
+const WAYS: [Way; 9] = [
     Way { patience: 2, grid: 8.0, reach: 2.0, needle: 16.0 },
     Way { patience: 0, grid: 8.0, reach: 2.0, needle: 16.0 },
     Way { patience: 1, grid: 32.0, reach: 8.0, needle: 16.0 },
@@ -51,6 +47,8 @@ const WAYS: [Way; 7] = [
     Way { patience: 2, grid: 64.0, reach: 16.0, needle: 64.0 },
     Way { patience: 4, grid: 64.0, reach: 16.0, needle: 64.0 },
     Way { patience: 1, grid: 64.0, reach: 1.0, needle: 4.0 },
+    Way { patience: 1, grid: 64.0, reach: 1.0, needle: 16.0 },
+    Way { patience: 1, grid: 64.0, reach: 4.0, needle: 16.0 },
 ];
 
 /// A surface that is done.
@@ -64,19 +62,6 @@ pub(crate) struct Rounded {
     pub(crate) separated: usize,
     /// By which part the volume has changed.
     pub(crate) volume_error: f64,
-}
-
-/// All triangles are of one operand, as they are.
-struct One;
-
-impl Owner for One {
-    fn operand(&self, _: u32) -> u32 {
-        0
-    }
-
-    fn is_turned(&self, _: u32) -> bool {
-        false
-    }
 }
 
 /// The surface of a solid to be rounded.
@@ -98,9 +83,13 @@ const CLOSE: f64 = 1e-6;
 /// first changes it by much.
 pub(crate) fn round(surface: &Surface<'_>, progress: &Progress) -> Result<Option<Rounded>, Stopped> {
     let volume = surface.volume();
+    let rounding = Rounding { fine: surface.fine, kinds: surface.kinds, input: surface.input, near: None, exact: true };
+    let mut draft = Draft::new(surface.refined, surface.faces, &rounding, |t| t);
+    surface.mark(&mut draft);
+    let first = surface.look(draft, progress)?;
     let mut best: Option<Rounded> = None;
     for way in &WAYS {
-        let Some(mut rounded) = way.go(surface, progress)? else { continue };
+        let Some(mut rounded) = way.go(surface, first.clone(), progress)? else { continue };
         let corners = (0..rounded.mesh.triangles.len()).map(|t| rounded.mesh.corners(t));
         rounded.volume_error = (self::volume(corners) / volume - 1.0).abs();
         // Where nothing crossed, all ways are one.
@@ -115,62 +104,85 @@ pub(crate) fn round(surface: &Surface<'_>, progress: &Progress) -> Result<Option
     Ok(best)
 }
 
+/// A draft with the numbers of the result, and which of its triangles cross others or have no area, ascending.
+#[derive(Clone)]
+struct Seen {
+    draft: Draft,
+    mesh: TriMesh,
+    offenders: Vec<u32>,
+}
+
 impl Way {
-    /// Rounds a surface and unites it with itself until nothing crosses.
-    fn go(&self, surface: &Surface<'_>, progress: &Progress) -> Result<Option<Rounded>, Stopped> {
-        let rounding = Rounding { fine: surface.fine, kinds: surface.kinds, near: None, exact: true };
-        let mut draft = Draft::new(surface.refined, surface.faces, &rounding, |t| t);
-        let most = GROWTH * draft.triangles.len() + 1000;
+    /// Unites a surface with itself until nothing crosses.
+    fn go(&self, surface: &Surface<'_>, mut seen: Seen, progress: &Progress) -> Result<Option<Rounded>, Stopped> {
+        let most = GROWTH * seen.draft.triangles.len() + 1000;
         let mut fewest = usize::MAX;
         for number in 0..ROUNDS {
             progress.check()?;
-            let mut mesh = draft.mesh(surface.fine, surface.input);
-            let mut offenders = surface.offenders(&draft, &mesh, progress)?;
-            if offenders.is_empty() {
-                let separated = draft.separate(surface.fine, f64::from(1 << number));
+            if seen.offenders.is_empty() {
+                seen.draft.fresh.fill(false);
+                let separated = seen.draft.separate(surface.fine, f64::from(1 << number.min(7)));
                 if separated.vertices > 0 {
-                    mesh = draft.mesh(surface.fine, surface.input);
-                    offenders = surface.offenders(&draft, &mesh, progress)?;
+                    seen = surface.look(seen.draft, progress)?;
                 }
-                if offenders.is_empty() && separated.is_manifold {
-                    let (sources, separated) = (draft.sources, separated.vertices);
+                if seen.offenders.is_empty() && separated.is_manifold {
+                    let (Seen { draft, mesh, .. }, separated) = (seen, separated.vertices);
+                    let sources = draft.sources;
                     return Ok(Some(Rounded { mesh, sources, rounds: number, separated, volume_error: 0.0 }));
                 }
             }
+            let Seen { mut draft, offenders, .. } = seen;
             fewest = fewest.min(offenders.len());
             if draft.triangles.len() > most || offenders.len() > WORSE * fewest + 100 {
                 break;
             }
-            let grid = if number < self.patience { 0.0 } else { self.grid };
-            draft.move_offenders(&offenders, surface.fine, grid, number);
-            draft.mend_needles(&offenders, surface.fine, self.needle * f64::from(1 << number));
+            self.mend(&mut draft, &offenders, surface.fine, number);
             match united(&draft, self.reach, surface, progress)? {
-                Some(next) => draft = next,
+                Some(next) => seen = surface.look(next, progress)?,
                 None => break,
             }
         }
         Ok(None)
     }
+
+    /// Moves vertices of triangles that cross; all triangles at these vertices, and at others that moved, are fresh afterwards.
+    fn mend(&self, draft: &mut Draft, offenders: &[u32], fine: &Fine, number: u32) {
+        let before = draft.clone();
+        let grid = if number < self.patience { 0.0 } else { self.grid };
+        draft.move_offenders(offenders, fine, grid, number);
+        draft.mend_needles(offenders, fine, self.needle * f64::from(1 << number.min(7)));
+        let moved = |v: usize| draft.places[v] != before.places[v] || draft.kinds[v] != before.kinds[v];
+        let mut at: Vec<bool> = (0..draft.places.len()).map(moved).collect();
+        offenders.iter().flat_map(|&t| before.triangles[t as usize]).for_each(|v| at[v as usize] = true);
+        draft.fresh = draft.triangles.iter().map(|corners| corners.iter().any(|&v| at[v as usize])).collect();
+    }
 }
 
 impl Surface<'_> {
-    /// The triangles that cross others or have no area, ascending. Where it is known which triangles of the input touched nothing, those that are still what they
-    /// were are not looked at against each other again.
-    fn offenders(&self, draft: &Draft, mesh: &TriMesh, progress: &Progress) -> Result<Vec<u32>, Stopped> {
+    /// Marks what may cross: where it is known which triangles of the input touched nothing, those that are still what they were do not cross each
+    /// other.
+    pub(crate) fn mark(&self, draft: &mut Draft) {
         let suspects = self.options.suspects;
-        let pairs = if suspects.is_empty() {
-            self_intersections(mesh, progress)?
-        } else {
-            let own = |v: &u32| matches!(draft.kinds[*v as usize], Kind::Own(_));
-            let marked = |(t, source): (&[u32; 3], &u32)| suspects[*source as usize] || !t.iter().all(own);
-            let marked: Vec<bool> = draft.triangles.iter().zip(&draft.sources).map(marked).collect();
-            intersections_with(mesh, &marked, progress)?
+        if suspects.is_empty() {
+            return;
+        }
+        let own = |v: &u32| matches!(draft.kinds[*v as usize], Kind::Own(_));
+        let may = |(t, source): (&[u32; 3], &u32)| suspects[*source as usize] || !t.iter().all(own);
+        draft.fresh = draft.triangles.iter().zip(&draft.sources).map(may).collect();
+    }
+
+    /// Looks at what crosses among the fresh triangles of a draft, and between those and others.
+    fn look(&self, draft: Draft, progress: &Progress) -> Result<Seen, Stopped> {
+        let mesh = draft.mesh(self.fine, self.input);
+        let pairs = match draft.fresh.contains(&false) {
+            true => intersections_with(&mesh, &draft.fresh, progress)?,
+            false => self_intersections(&mesh, progress)?,
         };
-        let mut found: Vec<u32> = pairs.into_iter().flatten().collect();
-        found.extend(flat_triangles(mesh));
-        found.sort_unstable();
-        found.dedup();
-        Ok(found)
+        let mut offenders: Vec<u32> = pairs.into_iter().flatten().collect();
+        offenders.extend(flat_triangles(&mesh));
+        offenders.sort_unstable();
+        offenders.dedup();
+        Ok(Seen { draft, mesh, offenders })
     }
 }
 
@@ -198,48 +210,6 @@ impl Draft {
             }
         }
     }
-}
-
-/// The union of a draft with itself.
-fn united(draft: &Draft, reach: f64, surface: &Surface<'_>, progress: &Progress) -> Result<Option<Draft>, Stopped> {
-    let (facets, numbers) = Facets::new(&draft.places, &draft.triangles);
-    let mut kinds = vec![Kind::Moved; facets.vertices.len()];
-    for (&n, &kind) in numbers.iter().zip(&draft.kinds) {
-        if kind != Kind::Moved && !matches!(kinds[n as usize], Kind::Own(_)) {
-            kinds[n as usize] = kind;
-        }
-    }
-    let pairs = touching(&facets, |_| true, progress)?;
-    let mut touched: Vec<u32> = pairs.iter().flatten().copied().collect();
-    touched.sort_unstable();
-    touched.dedup();
-    let near = Near::new(&facets, &touched, surface.fine, reach);
-    let refined = refine(facets, &pairs, progress)?;
-    let corners = refined.corners();
-    let edges = Edges::new(&corners, refined.points.len());
-    if !gaps(&refined, &edges, &One).is_empty() {
-        return Ok(None);
-    }
-    let cells = Cells::of(&refined, &edges, progress)?;
-    let Some(winding) = cells.winding(&refined, 1, &One) else { return Ok(None) };
-    let inside: Vec<bool> = winding.iter().map(|&winding| winding >= 1).collect();
-    let class = |t: u32| surface.options.classes.get(draft.sources[t as usize] as usize).copied().unwrap_or(0);
-    let faces = merge(&refined, extract(&refined, &cells, &inside), &class, progress)?;
-    let rounding = Rounding { fine: surface.fine, kinds: &kinds, near: Some(&near), exact: false };
-    Ok(Some(Draft::new(&refined, &faces, &rounding, |t| draft.sources[t as usize])))
-}
-
-/// The pairs of facets that touch elsewhere than at what they share, among those that may.
-pub(crate) fn touching(
-    facets: &Facets,
-    may_touch: impl Fn(u32) -> bool,
-    progress: &Progress,
-) -> Result<Vec<[u32; 2]>, Stopped> {
-    let list: Vec<u32> = (0..facets.len() as u32).filter(|&f| may_touch(f)).collect();
-    let positions = facets.vertices.iter().map(|v| DVec3::from_array(v.map(f64::from))).collect();
-    let triangles = list.iter().map(|&f| facets.corners[f as usize]).collect();
-    let pairs = self_intersections(&TriMesh { positions, triangles }, progress)?;
-    Ok(pairs.into_iter().map(|pair| pair.map(|n| list[n as usize])).collect())
 }
 
 impl Surface<'_> {

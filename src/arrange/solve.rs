@@ -2,14 +2,15 @@
 
 use glam::DVec3;
 
-use super::cells::{Cells, Gap, gaps};
+use super::again::touching;
+use super::cells::{Cells, Gap, Ring, gaps};
 use super::draft::Kind;
 use super::extract::extract;
 use super::facets::Facets;
 use super::fine::Fine;
 use super::merge::merge;
 use super::refine::{Refined, refine};
-use super::round::{Rounded, Surface, round, touching};
+use super::round::{Rounded, Surface, round};
 use super::turn::Turned;
 use super::{ArrangeError, ArrangeOptions, ArrangeReport, Opening};
 use crate::ldi::{Expression, Operands};
@@ -70,11 +71,11 @@ fn attempted(
     let owner = Turned::none(operands, mesh.triangles.len());
     let corners = refined.corners();
     let edges = Edges::new(&corners, refined.points.len());
-    let open = gaps(&refined, &edges, &owner);
+    let open = gaps(&refined, &edges, &owner, &Ring::default());
     if !open.is_empty() {
         return Err(opened(&refined, &open, &fine, operands.count()));
     }
-    let cells = Cells::of(&refined, &edges, progress)?;
+    let cells = Cells::of(&refined, &edges, &Ring::default(), progress)?;
     let Some(winding) = cells.winding(&refined, operands.count(), &owner) else {
         return Err(opened(&refined, &[], &fine, operands.count()));
     };
