@@ -101,15 +101,17 @@ impl Part {
 
     /// The whole with this part mended: each of its triangles with one of the part that it lies on.
     fn joined(&self, whole: &Draft, (mended, parents): (Draft, Vec<u32>)) -> Draft {
-        let corners = |draft: &Draft, t: usize| {
-            draft.triangles[t].map(|v| (draft.places[v as usize], draft.kinds[v as usize]))
-        };
+        let corners =
+            |draft: &Draft, t: usize| draft.triangles[t].map(|v| (draft.places[v as usize], draft.kinds[v as usize]));
         // Each triangle with the one of the whole that it lies on, so that order is kept.
         let rest = (0..whole.triangles.len()).filter(|&t| !self.replaced[t]);
         let mut list: Vec<_> = rest.map(|t| (t as u32, false, corners(whole, t))).collect();
-        list.extend(parents.iter().enumerate().map(|(t, &parent)| {
-            (self.numbers[parent as usize], !self.ring[parent as usize], corners(&mended, t))
-        }));
+        list.extend(
+            parents
+                .iter()
+                .enumerate()
+                .map(|(t, &parent)| (self.numbers[parent as usize], !self.ring[parent as usize], corners(&mended, t))),
+        );
         list.sort_by_key(|&(t, ..)| t);
         let mut joined = Draft::default();
         let mut at: FxHashMap<[i32; 3], u32> = FxHashMap::default();
@@ -172,7 +174,8 @@ fn arranged(
     let inside: Vec<bool> = winding.iter().map(|&winding| winding >= 1).collect();
     let class = |t: u32| surface.options.classes.get(draft.sources[t as usize] as usize).copied().unwrap_or(0);
     let faces = merge(&refined, extract(&refined, &cells, &inside), &class, progress)?;
-    let rounding = Rounding { fine: surface.fine, kinds: &kinds, input: surface.input, near: Some(&near), exact: false };
+    let rounding =
+        Rounding { fine: surface.fine, kinds: &kinds, input: surface.input, near: Some(&near), exact: false };
     let mut next = Draft::new(&refined, &faces, &rounding, |t| t);
     let parents = std::mem::take(&mut next.sources);
     Ok(Some((next, parents)))
@@ -196,4 +199,3 @@ pub(crate) fn touching(
     let pairs = self_intersections(&TriMesh { positions, triangles }, progress)?;
     Ok(pairs.into_iter().map(|pair| pair.map(|n| list[n as usize])).collect())
 }
-

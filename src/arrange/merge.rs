@@ -12,10 +12,11 @@ use super::layout::Layout;
 use super::planar::Planar;
 use super::plane::Plane;
 use super::refine::Refined;
-use crate::mesh::edges::Edges;
+use crate::mesh::edges::{Edges, Union};
 use crate::progress::{Progress, Stopped};
 
-/// What makes faces one region: their sheet, the side that the solid lies on, and a number that keeps apart what looks different.
+/// What makes faces one region: a facet that stands for the cut ones around it in its plane, the side that the solid lies on, and a number that
+/// keeps apart what looks different.
 type Region = (u32, bool, u32);
 
 /// A border of a region from a needed point to the next, with the region on its left as seen from outside.
@@ -29,7 +30,9 @@ pub(crate) fn merge(
     progress: &Progress,
 ) -> Result<Vec<Face>, Stopped> {
     let corners: Vec<[u32; 3]> = faces.iter().map(|face| face.corners).collect();
-    let region: Vec<Region> = faces.iter().map(|face| (face.facet, face.over, class(face.cover.triangle))).collect();
+    let planes = Planes::of(refined, &faces, &corners);
+    let region: Vec<Region> =
+        faces.iter().map(|face| (planes.first[face.facet as usize], face.over, class(face.cover.triangle))).collect();
     let creases = creases(refined, &corners, &region);
     let is_whole = |face: &Face| refined.is_whole(face.facet);
     // The border half-edges of cut sheets, by where they start. A region that lies on both sides of an edge has two of them at each point.
@@ -62,18 +65,54 @@ pub(crate) fn merge(
     let contacts = contacts(&faces, &region, &creases, &is_whole);
     let merged: Vec<Vec<Face>> = sheets
         .par_iter()
-        .map(|borders| progress.check().map(|()| triangulated(refined, borders, &contacts)))
+        .map(|borders| progress.check().map(|()| triangulated(refined, &planes, borders, &contacts)))
         .collect::<Result<_, _>>()?;
-    // In the order of the facets.
-    let of_sheet: FxHashMap<u32, usize> = sheets.iter().enumerate().map(|(n, borders)| (borders[0].0.0, n)).collect();
+    // In the order of the facets: what stands for several is where the first of them is.
+    let mut of_sheet: FxHashMap<u32, usize> =
+        sheets.iter().enumerate().map(|(n, borders)| (borders[0].0.0, n)).collect();
     let mut result = Vec::new();
     for same in faces.chunk_by(|a, b| a.facet == b.facet) {
-        match of_sheet.get(&same[0].facet) {
-            Some(&n) if !is_whole(&same[0]) => result.extend_from_slice(&merged[n]),
-            _ => result.extend_from_slice(same),
+        match is_whole(&same[0]) {
+            true => result.extend_from_slice(same),
+            false => {
+                let sheet = of_sheet.remove(&planes.first[same[0].facet as usize]);
+                sheet.into_iter().for_each(|n| result.extend_from_slice(&merged[n]));
+            }
         }
     }
     Ok(result)
+}
+
+/// Which cut facets lie in one plane with neighbours, so that the edges between them say nothing either.
+struct Planes {
+    /// For each facet the one that stands for it: itself where it is alone.
+    first: Vec<u32>,
+    /// Whether it stands for others besides itself.
+    several: Vec<bool>,
+}
+
+impl Planes {
+    fn of(refined: &Refined, faces: &[Face], corners: &[[u32; 3]]) -> Self {
+        let facets = &refined.facets;
+        let mut union = Union::new(facets.len());
+        let is_one = |a: &Face, b: &Face| {
+            let (p, q) = (facets.plane(a.facet), facets.plane(b.facet));
+            let axis = p.axis();
+            (p.normal[axis] > 0) == (q.normal[axis] > 0) && facets.places(b.facet).iter().all(|&at| p.value(at) == 0)
+        };
+        Edges::new(corners, refined.points.len()).each(|edge| {
+            let mut beside = edge.halves().map(|half| &faces[half as usize / 3]);
+            let (Some(a), Some(b), None) = (beside.next(), beside.next(), beside.next()) else { return };
+            let cut = |face: &Face| !refined.is_whole(face.facet);
+            if a.facet != b.facet && a.over == b.over && cut(a) && cut(b) && is_one(a, b) {
+                union.join(a.facet, b.facet);
+            }
+        });
+        let first: Vec<u32> = (0..facets.len() as u32).map(|f| union.root(f)).collect();
+        let mut several = vec![false; first.len()];
+        (0..).zip(&first).filter(|&(f, &first)| f != first).for_each(|(_, &first)| several[first as usize] = true);
+        Self { first, several }
+    }
 }
 
 /// The points within regions at which others touch them, each with its facet, ascending.
@@ -147,13 +186,14 @@ fn creases(refined: &Refined, corners: &[[u32; 3]], region: &[Region]) -> Crease
 }
 
 /// The regions of one sheet between their borders, and with the points at which others touch them.
-fn triangulated(refined: &Refined, borders: &[Border], contacts: &[(u32, u32)]) -> Vec<Face> {
+fn triangulated(refined: &Refined, planes: &Planes, borders: &[Border], contacts: &[(u32, u32)]) -> Vec<Face> {
     let facet = borders[0].0.0;
     let plane: Plane = refined.facets.plane(facet);
     let touched = contacts.partition_point(|contact| contact.0 < facet);
     let touched = contacts[touched..].iter().take_while(|contact| contact.0 == facet).map(|contact| contact.1);
     let numbers = borders.iter().flat_map(|border| border.1).chain(touched).collect();
-    let alone = refined.is_single(facet).then(|| refined.facets.corners[facet as usize]);
+    let is_alone = refined.is_single(facet) && !planes.several[facet as usize];
+    let alone = is_alone.then(|| refined.facets.corners[facet as usize]);
     let layout = Layout::new(&refined.points, numbers, &plane, alone);
     let mut planar = layout.planar();
     // What lies left of an edge, as the facet is seen: regions over it run the other way round.

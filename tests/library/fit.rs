@@ -59,13 +59,13 @@ fn farthest_corner(wanted: &TriMesh, mesh: &TriMesh) -> f64 {
 }
 
 /// Seeds of [`turn`] for which a few triangles are left where the voxels' surface is folded over an edge.
-const MOST_WITH_MORE: usize = 4;
+const MOST_WITH_MORE: usize = 3;
 
 #[test]
 fn a_cube_of_any_orientation_comes_back_as_the_cube() {
     for missing in [0, 2] {
         let mut with_more = 0;
-        for seed in 0..20 {
+        for seed in 0..12 {
             let whole = cuboid(DVec3::ZERO, DVec3::ONE, turn(seed));
             let mut open = whole.clone();
             open.triangles.drain(..missing);
@@ -75,7 +75,7 @@ fn a_cube_of_any_orientation_comes_back_as_the_cube() {
             with_more += usize::from(outcome.solid.triangles.len() != 12);
             assert_eq!(outcome.report.closed_triangles > 0, missing > 0, "seed {seed}");
         }
-        assert!(with_more <= MOST_WITH_MORE, "{with_more} of 20 with {missing} missing have more than 12 triangles");
+        assert!(with_more <= MOST_WITH_MORE, "{with_more} of 12 with {missing} missing have more than 12 triangles");
     }
 }
 
