@@ -13,7 +13,7 @@ use super::facets::Facets;
 use super::merge::merge;
 use super::near::Near;
 use super::refine::refine;
-use super::round::Surface;
+use super::surface::Surface;
 use crate::mesh::edges::Edges;
 use crate::mesh::{TriMesh, intersections_with, self_intersections};
 use crate::progress::{Progress, Stopped};
@@ -79,9 +79,9 @@ impl Part {
         let border: FxHashSet<[u32; 2]> = (0..facets.len()).filter(|&f| core[f]).flat_map(edges).collect();
         let mut part = Self { draft: Draft::default(), numbers: Vec::new(), ring: Vec::new(), replaced: fresh };
         let mut taken: Vec<(u32, bool)> = Vec::new();
-        for f in 0..facets.len() {
-            if core[f] || edges(f).iter().any(|edge| border.contains(edge)) {
-                taken.extend(facets.covers(f as u32).iter().map(|cover| (cover.triangle, !core[f])));
+        for (f, &is_core) in core.iter().enumerate() {
+            if is_core || edges(f).iter().any(|edge| border.contains(edge)) {
+                taken.extend(facets.covers(f as u32).iter().map(|cover| (cover.triangle, !is_core)));
             }
         }
         taken.sort_unstable();

@@ -27,7 +27,8 @@ pub(crate) struct Anchor {
     pub(crate) crossed: Vec<Crossed>,
 }
 
-/// An anchor for each connected part; parts without a piece that can be seen from above have none.
+/// An anchor for each connected part. A closed surface without a piece that can be seen from above encloses nothing: what winds around it
+/// does not matter, and nothing is said to.
 pub(crate) fn anchors(
     refined: &Refined,
     part_of: &[u32],
@@ -44,9 +45,18 @@ pub(crate) fn anchors(
             best[part] = Some((whole, area, n));
         }
     }
-    let chosen: Vec<u32> = best.into_iter().flatten().map(|best| best.2).collect();
+    let chosen: Vec<u32> = best.iter().flatten().map(|best| best.2).collect();
+    let mut upright: Vec<(u32, u32)> = part_of
+        .iter()
+        .zip(0..)
+        .filter(|&(&part, _)| best[part as usize].is_none())
+        .map(|(&part, n)| (part, n))
+        .collect();
+    upright.sort_unstable();
+    upright.dedup_by_key(|&mut (part, _)| part);
+    let upright = upright.into_iter().map(|(_, n)| Anchor { cell: beside[n as usize][0], crossed: Vec::new() });
     let columns = Columns::new(&refined.facets, chosen.len());
-    chosen
+    let seen: Vec<Anchor> = chosen
         .par_iter()
         .map(|&n| {
             progress.check()?;
@@ -56,7 +66,8 @@ pub(crate) fn anchors(
             let above = columns.at(middle.near).flat_map(|f| crossed(&refined.facets, f, &middle));
             Ok(Anchor { cell: beside[n as usize][usize::from(!faces_up)], crossed: above.collect() })
         })
-        .collect()
+        .collect::<Result<_, _>>()?;
+    Ok(seen.into_iter().chain(upright).collect())
 }
 
 fn seen_from_above(refined: &Refined, piece: &Piece) -> f64 {

@@ -12,7 +12,8 @@
 //! part is counted along a ray, and from there through all others, piece by piece. The pieces between a cell inside of the result and one outside are
 //! its surface. Nothing up to here is approximate.
 //!
-//! The vertices are then rounded to numbers that a file holds, and what crosses for that is united with itself again (`round`).
+//! The vertices are then rounded to numbers that a file holds (`round`), and what crosses for that is united with itself again, with the triangles around it
+//! (`again`).
 
 mod again;
 mod anchor;
@@ -38,6 +39,7 @@ mod report;
 mod round;
 mod sheets;
 mod solve;
+mod surface;
 #[cfg(test)]
 mod tests;
 mod turn;

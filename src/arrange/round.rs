@@ -8,10 +8,8 @@ use glam::DVec3;
 
 use super::again::united;
 use super::draft::{Draft, Kind, Rounding};
-use super::extract::Face;
 use super::fine::Fine;
-use super::options::ArrangeOptions;
-use super::refine::Refined;
+use super::surface::{Surface, volume};
 use crate::mesh::{TriMesh, flat_triangles, intersections_with, self_intersections};
 use crate::progress::{Progress, Stopped};
 
@@ -64,25 +62,13 @@ pub(crate) struct Rounded {
     pub(crate) volume_error: f64,
 }
 
-/// The surface of a solid to be rounded.
-pub(crate) struct Surface<'a> {
-    pub(crate) refined: &'a Refined,
-    pub(crate) faces: &'a [Face],
-    /// What each vertex of the arrangement is.
-    pub(crate) kinds: &'a [Kind],
-    pub(crate) fine: &'a Fine,
-    /// The positions of the input's vertices as the result may have them, model units.
-    pub(crate) input: &'a [DVec3],
-    pub(crate) options: &'a ArrangeOptions<'a>,
-}
-
 /// A volume that is off by less than this part is not worth another way.
 const CLOSE: f64 = 1e-6;
 
 /// Rounds a surface; `None` if triangles cross whichever way is gone. Of several ways the one that changes the volume least is taken, once the
 /// first changes it by much.
 pub(crate) fn round(surface: &Surface<'_>, progress: &Progress) -> Result<Option<Rounded>, Stopped> {
-    let volume = surface.volume();
+    let exact = surface.volume();
     let rounding = Rounding { fine: surface.fine, kinds: surface.kinds, input: surface.input, near: None, exact: true };
     let mut draft = Draft::new(surface.refined, surface.faces, &rounding, |t| t);
     surface.mark(&mut draft);
@@ -91,7 +77,7 @@ pub(crate) fn round(surface: &Surface<'_>, progress: &Progress) -> Result<Option
     for way in &WAYS {
         let Some(mut rounded) = way.go(surface, first.clone(), progress)? else { continue };
         let corners = (0..rounded.mesh.triangles.len()).map(|t| rounded.mesh.corners(t));
-        rounded.volume_error = (self::volume(corners) / volume - 1.0).abs();
+        rounded.volume_error = (volume(corners) / exact - 1.0).abs();
         // Where nothing crossed, all ways are one.
         let is_close = rounded.volume_error <= CLOSE || rounded.rounds == 0;
         if best.as_ref().is_none_or(|best| rounded.volume_error < best.volume_error) {
@@ -159,18 +145,6 @@ impl Way {
 }
 
 impl Surface<'_> {
-    /// Marks what may cross: where it is known which triangles of the input touched nothing, those that are still what they were do not cross each
-    /// other.
-    pub(crate) fn mark(&self, draft: &mut Draft) {
-        let suspects = self.options.suspects;
-        if suspects.is_empty() {
-            return;
-        }
-        let own = |v: &u32| matches!(draft.kinds[*v as usize], Kind::Own(_));
-        let may = |(t, source): (&[u32; 3], &u32)| suspects[*source as usize] || !t.iter().all(own);
-        draft.fresh = draft.triangles.iter().zip(&draft.sources).map(may).collect();
-    }
-
     /// Looks at what crosses among the fresh triangles of a draft, and between those and others.
     fn look(&self, draft: Draft, progress: &Progress) -> Result<Seen, Stopped> {
         let mesh = draft.mesh(self.fine, self.input);
@@ -210,21 +184,4 @@ impl Draft {
             }
         }
     }
-}
-
-impl Surface<'_> {
-    /// The volume before rounding, cubic model units, to about 1e-12 of it.
-    pub(super) fn volume(&self) -> f64 {
-        let corner = |p: u32| match self.kinds.get(p as usize) {
-            Some(&Kind::Own(v)) => self.input[v as usize],
-            _ => self.refined.points.approximate(p) * self.fine.step,
-        };
-        volume(self.faces.iter().map(|face: &Face| face.corners.map(corner)))
-    }
-}
-
-/// The signed volume that triangles enclose.
-pub(super) fn volume(triangles: impl Iterator<Item = [DVec3; 3]> + Clone) -> f64 {
-    let Some([origin, ..]) = triangles.clone().next() else { return 0.0 };
-    triangles.map(|corners| corners.map(|p| p - origin)).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum()
 }
