@@ -1,0 +1,61 @@
+//! The density of a lid made that of its rim.
+//!
+//! Liepa (Filling holes in meshes, 2003): every point has a scale, the mean length of the edges of the rim at it. A triangle whose centre
+//! is farther from all its corners than their scales allow is divided into three around that centre, which gets the mean of their scales. In between
+//! edges are turned until the lid is Delaunay. That ends by itself, since every division makes triangles smaller.
+
+use super::sheet::Sheet;
+
+/// How much nearer than its scale a corner may be to the centre of a triangle that is divided: Liepa's √2.
+const DENSITY: f64 = std::f64::consts::SQRT_2;
+
+/// Rounds of division; each makes triangles at least a third smaller.
+const ROUNDS: usize = 40;
+
+/// Divides triangles until the lid is as dense as its rim. At most `most` vertices are added: where the rim asks for more, the whole lid is coarser.
+pub(super) fn refine(sheet: &mut Sheet<'_>, most: usize) {
+    sheet.turn_edges();
+    let rim = sheet.below() as usize;
+    let length = |k: usize| sheet.points[k].distance(sheet.points[(k + 1) % rim]);
+    let mut scale: Vec<f64> = (0..rim).map(|k| (length(k) + length((k + rim - 1) % rim)) / 2.0).collect();
+    scale.push(0.0);
+    let density = DENSITY.min(allowed(sheet, &scale, most));
+    for _ in 0..ROUNDS {
+        let before = sheet.points.len();
+        for t in 0..sheet.triangle_ids() {
+            let Some(corners) = sheet.triangle(t) else { continue };
+            if sheet.points.len() - rim - 1 >= most {
+                break;
+            }
+            let places = sheet.corners(corners);
+            let centre = (places[0] + places[1] + places[2]) / 3.0;
+            let mean = corners.iter().map(|&v| scale[v as usize]).sum::<f64>() / 3.0;
+            let far = corners.iter().zip(places).all(|(&v, p)| {
+                let away = density * p.distance(centre);
+                away > mean && away > scale[v as usize]
+            });
+            if far {
+                sheet.divide(t, centre);
+                scale.push(mean);
+            }
+        }
+        if sheet.points.len() == before {
+            return;
+        }
+        sheet.turn_edges();
+    }
+}
+
+/// The density at which the lid gets about `most` vertices, from its area and the mean scale of its rim.
+fn allowed(sheet: &Sheet<'_>, scale: &[f64], most: usize) -> f64 {
+    let area: f64 = sheet.triangles().iter().map(|&t| area(sheet.corners(t))).sum();
+    let mean = scale.iter().sum::<f64>() / (scale.len() - 1) as f64;
+    // A lid of equilateral triangles with edges as long as the scale has one vertex for each of its rhombs.
+    let wanted = area / (mean * mean * 0.75f64.sqrt()).max(f64::MIN_POSITIVE);
+    DENSITY * (most as f64 / wanted.max(1.0)).sqrt()
+}
+
+/// The area of a triangle.
+pub(super) fn area([a, b, c]: [glam::DVec3; 3]) -> f64 {
+    (b - a).cross(c - a).length() / 2.0
+}

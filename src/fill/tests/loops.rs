@@ -1,0 +1,3 @@
+//! Loops alone: their measures, and triangulations of all lengths.
+
+use super::*;
