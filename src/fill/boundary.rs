@@ -42,10 +42,12 @@ impl Boundary {
         for k in 0..count {
             let (from, to) = (rim.vertices[k], rim.vertices[(k + 1) % count]);
             let mut apex = None;
+            let mut open = 0;
             for &t in around.of(from) {
                 let t = mesh.triangles[t as usize];
                 let corner = (0..3).find(|&c| t[c] == to && t[(c + 1) % 3] == from);
                 apex = apex.or(corner.map(|c| t[(c + 2) % 3]));
+                open += i32::from(corner.is_some()) - i32::from((0..3).any(|c| t[c] == from && t[(c + 1) % 3] == to));
                 for other in t.iter().filter_map(|v| number.get(v)).map(|&v| v as usize) {
                     let gap = other.abs_diff(k);
                     if gap > 1 && gap != count - 1 {
@@ -53,7 +55,8 @@ impl Boundary {
                     }
                 }
             }
-            beside.push(mesh.positions[apex.ok_or(NoLid::NoLoop)? as usize] * scale);
+            let apex = apex.filter(|_| open > 0).ok_or(NoLid::NoLoop)?;
+            beside.push(mesh.positions[apex as usize] * scale);
         }
         let points = points.map(|p| p * scale).collect();
         Ok(Self { points, beside, joined, scale })

@@ -12,6 +12,9 @@ const SAME: f64 = 1.5e-4;
 /// How far points may lie from the planes beside, as a share of the diameter.
 const OFF: f64 = 1e-4;
 
+/// Cosine of 20°: three or four planes that are bent less against each other are those of a round surface. Five have no common point by chance.
+const BENT: f64 = 0.9397;
+
 /// How far from the middle of the rim the point may be where its planes meet, in diameters.
 const REACH: f64 = 1.0;
 
@@ -60,6 +63,7 @@ pub(super) fn by_planes(boundary: &Boundary, diameter: f64) -> Option<Cover> {
         0 | 1 => return None,
         2 if boundary.is_joined(sides[0].ends[0] as u32, sides[1].ends[0] as u32) => return None,
         2 => None,
+        3 | 4 if !sides.windows(2).all(|pair| pair[0].normal.dot(pair[1].normal) < BENT) => return None,
         _ => Some(meeting_point(&sides, diameter)?),
     };
     let mut cover = Cover { triangles: Vec::new(), added: apex.into_iter().collect() };

@@ -21,29 +21,39 @@ pub(super) fn refine(sheet: &mut Sheet<'_>, most: usize) {
     scale.push(0.0);
     let density = DENSITY.min(allowed(sheet, &scale, most));
     for _ in 0..ROUNDS {
-        let before = sheet.points.len();
+        let mut coarse: Vec<(f64, u32)> = Vec::new();
         for t in 0..sheet.triangle_ids() {
             let Some(corners) = sheet.triangle(t) else { continue };
-            if sheet.points.len() - rim - 1 >= most {
-                break;
-            }
             let places = sheet.corners(corners);
             let centre = (places[0] + places[1] + places[2]) / 3.0;
-            let mean = corners.iter().map(|&v| scale[v as usize]).sum::<f64>() / 3.0;
+            let mean = mean_of(&scale, corners);
             let far = corners.iter().zip(places).all(|(&v, p)| {
                 let away = density * p.distance(centre);
                 away > mean && away > scale[v as usize]
             });
             if far {
-                sheet.divide(t, centre);
-                scale.push(mean);
+                coarse.push((area(places) / (mean * mean), t));
             }
         }
-        if sheet.points.len() == before {
+        // The coarsest first, so that the vertices are spread evenly where they do not suffice.
+        coarse.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        coarse.truncate(most + rim + 1 - sheet.points.len());
+        if coarse.is_empty() {
             return;
+        }
+        for (_, t) in coarse {
+            // A division gives only the triangle beside it other corners in another order.
+            let Some(corners) = sheet.triangle(t) else { continue };
+            let places = sheet.corners(corners);
+            scale.push(mean_of(&scale, corners));
+            sheet.divide(t, (places[0] + places[1] + places[2]) / 3.0);
         }
         sheet.turn_edges();
     }
+}
+
+fn mean_of(scale: &[f64], corners: [u32; 3]) -> f64 {
+    corners.iter().map(|&v| scale[v as usize]).sum::<f64>() / 3.0
 }
 
 /// The density at which the lid gets about `most` vertices, from its area and the mean scale of its rim.
