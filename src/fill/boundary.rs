@@ -79,9 +79,11 @@ impl Boundary {
     }
 }
 
-/// The unit normal of a triangle, zero where it has no area.
+/// The unit normal of a triangle of any size, zero where it has no area.
 pub(super) fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
-    (b - a).cross(c - a).normalize_or_zero()
+    let (u, v) = (b - a, c - a);
+    let size = u.abs().max(v.abs()).max_element();
+    if size > 0.0 { (u / size).cross(v / size).normalize_or_zero() } else { DVec3::ZERO }
 }
 
 /// Whether three points lie on a line, exactly.

@@ -13,6 +13,7 @@
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
+use super::creases::sharp_edges;
 use super::sheet::Sheet;
 use super::skyline::{Factor, Order};
 use super::{Rim, Surroundings};
@@ -21,7 +22,10 @@ use super::{Rim, Surroundings};
 const STEPS: usize = 6;
 
 /// The lid is done when no vertex moves farther than this share of the rim's diameter.
-const STILL: f64 = 1e-4;
+const STILL: f64 = 2e-4;
+
+/// It is also done when a step is larger than this share of the one before: what still moves then slides within the surface.
+const SLIDES: f64 = 0.7;
 
 /// How often curvatures are averaged along the rim.
 const SMOOTHINGS: usize = 2;
@@ -34,8 +38,14 @@ struct Surface {
     outside: Vec<[u32; 3]>,
     /// How many vertices the rim has.
     rim: usize,
+    /// The number of the first vertex that moves: those between the rim and it stay, but nothing is known of the surface there.
+    first: usize,
     /// The number of the first vertex outside.
     end: usize,
+    /// For each vertex of the rim whether a sharp edge ends there.
+    at_crease: Vec<bool>,
+    /// For each vertex from `end` on whether it lies on a sharp edge.
+    sharp: Vec<bool>,
 }
 
 /// The discrete Laplacian of a surface.
@@ -57,19 +67,22 @@ pub(super) fn fair(sheet: &mut Sheet<'_>, around: &Surroundings<'_>, rim: &Rim, 
         return;
     }
     let diameter = rim.diameter * scale;
+    let mut last = f64::INFINITY;
     for step in 0..STEPS {
         let laplacian = Laplacian::new(&surface.points, surface.all(sheet));
         let order = surface.order(&laplacian);
         let bent = (step > 0).then(|| surface.rest(&laplacian, &order, diameter)).flatten();
         let Some(moved) = surface.solve(&laplacian, &order, bent.as_deref()) else { return };
-        let still = surface.free().zip(&moved).all(|(v, p)| p.distance(surface.points[v]) < STILL * diameter);
+        let far = |(v, p): (usize, &DVec3)| p.distance(surface.points[v]);
+        let most = surface.free().zip(&moved).map(far).fold(0.0, f64::max);
         for (v, p) in surface.free().zip(moved) {
             surface.points[v] = p;
             sheet.points[v] = p;
         }
-        if still {
+        if most < STILL * diameter || (step > 2 && most > SLIDES * last) {
             return;
         }
+        last = most;
         if step < 2 {
             sheet.turn_edges();
         }
@@ -91,25 +104,29 @@ impl Surface {
         let place = |t: u32| mesh.corners(t as usize).map(|p| p.to_array());
         all.sort_by(|&a, &b| place(a).partial_cmp(&place(b)).unwrap_or(std::cmp::Ordering::Equal));
         let mut points = sheet.points.clone();
+        let mut sharp = Vec::new();
         let mut number: FxHashMap<u32, u32> = rim.vertices.iter().copied().zip(0u32..).collect();
         let mut local = |v: u32| {
             *number.entry(v).or_insert_with(|| {
                 points.push(mesh.positions[v as usize] * scale);
+                sharp.push(!sharp_edges(around, v).is_empty());
                 points.len() as u32 - 1
             })
         };
         let outside = all.iter().map(|&t| mesh.triangles[t as usize].map(&mut local)).collect();
-        Self { points, outside, rim: rim.vertices.len(), end: sheet.points.len() }
+        let at_crease = rim.vertices.iter().map(|&v| !sharp_edges(around, v).is_empty()).collect();
+        let rim = rim.vertices.len();
+        Self { at_crease, points, outside, rim, first: rim + 1 + sheet.held, end: sheet.points.len(), sharp }
     }
 
     /// The vertices that move.
     fn free(&self) -> std::ops::Range<usize> {
-        self.rim + 1..self.end
+        self.first..self.end
     }
 
     /// The number of a vertex among those that move.
     fn unknown(&self, v: u32) -> Option<u32> {
-        self.free().contains(&(v as usize)).then(|| v - self.rim as u32 - 1)
+        self.free().contains(&(v as usize)).then(|| v - self.first as u32)
     }
 
     /// All triangles.
@@ -132,6 +149,10 @@ impl Surface {
         for v in self.free() {
             let row = self.unknown(v as u32)?;
             for &(w, weight) in &laplacian.rows[v] {
+                // A sharp edge parts two surfaces with a curvature each.
+                if (self.rim..self.first).contains(&(w as usize)) {
+                    continue;
+                }
                 // Weights below zero would give values beyond those of the rim.
                 let weight = weight.max(1e-3);
                 entries.push((row, row, weight));
@@ -143,7 +164,8 @@ impl Surface {
             }
         }
         let inner = Factor::new(order, &entries)?.solve(&right);
-        let all = rim.into_iter().chain([0.0]).chain(inner);
+        let between = std::iter::repeat_n(0.0, self.first - self.rim);
+        let all = rim.into_iter().chain(between).chain(inner);
         Some(all.enumerate().map(|(v, value)| laplacian.normals[v].normalize_or_zero() * value).collect())
     }
 
@@ -159,7 +181,9 @@ impl Surface {
         };
         let known = |v: usize| {
             let outside = laplacian.rows[v].iter().map(|&(w, _)| w as usize);
-            let whole = outside.filter(|&w| w >= self.end && laplacian.closed[w] && laplacian.areas[w] > 0.0);
+            let whole = outside.filter(|&w| {
+                w >= self.end && !self.sharp[w - self.end] && laplacian.closed[w] && laplacian.areas[w] > 0.0
+            });
             let values: Vec<f64> = whole.map(curvature).filter(|value| value.is_finite()).collect();
             (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
         };
@@ -180,7 +204,8 @@ impl Surface {
     fn solve(&self, laplacian: &Laplacian, order: &Order, bent: Option<&[DVec3]>) -> Option<Vec<DVec3>> {
         let mut entries = Vec::new();
         let mut right = vec![DVec3::ZERO; self.free().len()];
-        for v in (0..self.rim).filter(|&v| laplacian.closed[v]).chain(self.free()) {
+        let smooth = |v: &usize| laplacian.closed[*v] && !self.at_crease[*v];
+        for v in (0..self.rim).filter(smooth).chain(self.free()) {
             let area = laplacian.areas[v];
             let mut row: Vec<(u32, f64)> = laplacian.rows[v].clone();
             row.push((v as u32, -row.iter().map(|(_, weight)| weight).sum::<f64>()));

@@ -73,15 +73,35 @@ pub(super) fn triangulate(boundary: &Boundary, rule: Rule) -> Vec<[u32; 3]> {
     let beside: Vec<DVec3> = (0..boundary.len()).map(|edge| boundary.normal_beside(edge)).collect();
     let mut triangles = Vec::with_capacity(boundary.len() - 2);
     let all: Vec<u32> = (0..boundary.len() as u32).collect();
-    of_loop(boundary, rule, &all, &beside, &mut triangles);
+    of_points(boundary, &boundary.points, rule, &all, &beside, &mut triangles);
     triangles
 }
 
-/// Appends the triangles over a loop of points; `beside` has the normal across each edge.
-fn of_loop(boundary: &Boundary, rule: Rule, points: &[u32], beside: &[DVec3], triangles: &mut Vec<[u32; 3]>) {
+/// Appends the triangles over a loop of some points, which may be others than those of the rim; `beside` has the normal across each edge, zero where none is known.
+pub(super) fn of_points(
+    boundary: &Boundary,
+    places: &[DVec3],
+    rule: Rule,
+    points: &[u32],
+    beside: &[DVec3],
+    triangles: &mut Vec<[u32; 3]>,
+) {
+    of_loop(&Task { boundary, places, rule }, points, beside, triangles);
+}
+
+/// What is asked of all loops of a rim.
+#[derive(Clone, Copy)]
+struct Task<'a> {
+    boundary: &'a Boundary,
+    /// Where all points are.
+    places: &'a [DVec3],
+    rule: Rule,
+}
+
+fn of_loop(task: &Task<'_>, points: &[u32], beside: &[DVec3], triangles: &mut Vec<[u32; 3]>) {
     let count = points.len();
     if count <= AT_ONCE {
-        Table { boundary, rule, points, parts: Vec::new() }.fill(beside, triangles);
+        Table { task: *task, points, parts: Vec::new() }.fill(beside, triangles);
         return;
     }
     let parts = ((count as f64).sqrt().ceil() as usize).clamp(3, AT_ONCE);
@@ -90,14 +110,14 @@ fn of_loop(boundary: &Boundary, rule: Rule, points: &[u32], beside: &[DVec3], tr
     let over = |k: usize| beside[starts[k]..starts[k + 1]].iter().sum::<DVec3>().normalize_or_zero();
     let chords: Vec<DVec3> = (0..parts).map(over).collect();
     let first = triangles.len();
-    of_loop(boundary, rule, &chosen, &chords, triangles);
+    of_loop(task, &chosen, &chords, triangles);
     let mut across = vec![DVec3::ZERO; parts];
     let place: rustc_hash::FxHashMap<u32, usize> = chosen.iter().copied().zip(0..).collect();
     for t in &triangles[first..] {
         for k in 0..3 {
             let (from, to) = (place[&t[k]], place[&t[(k + 1) % 3]]);
             if (from + 1) % parts == to {
-                across[from] = normal(t.map(|v| boundary.points[v as usize]));
+                across[from] = normal(t.map(|v| task.places[v as usize]));
             }
         }
     }
@@ -106,15 +126,14 @@ fn of_loop(boundary: &Boundary, rule: Rule, points: &[u32], beside: &[DVec3], tr
         if part.len() > 2 {
             let mut beside = beside[starts[k]..starts[k + 1]].to_vec();
             beside.push(across[k]);
-            of_loop(boundary, rule, &part, &beside, triangles);
+            of_loop(task, &part, &beside, triangles);
         }
     }
 }
 
 /// The best ways over all parts of a loop.
 struct Table<'a> {
-    boundary: &'a Boundary,
-    rule: Rule,
+    task: Task<'a>,
     points: &'a [u32],
     parts: Vec<Part>,
 }
@@ -125,7 +144,7 @@ impl Table<'_> {
     }
 
     fn place(&self, k: usize) -> DVec3 {
-        self.boundary.points[self.points[k] as usize]
+        self.task.places[self.points[k] as usize]
     }
 
     /// Finds the best ways and appends the triangles.
@@ -154,7 +173,7 @@ impl Table<'_> {
 
     /// The best way over the part from one point to another; `closing` is the normal across its chord, if that is known.
     fn best(&self, from: usize, to: usize, closing: Option<DVec3>) -> Part {
-        let known = closing.is_none() && self.boundary.is_joined(self.points[from], self.points[to]);
+        let known = closing.is_none() && self.task.boundary.is_joined(self.points[from], self.points[to]);
         let (a, c) = (self.place(from), self.place(to));
         let mut best: Option<Part> = None;
         for apex in from + 1..to {
@@ -168,14 +187,18 @@ impl Table<'_> {
             let normal = if length > 0.0 { cross / length } else { DVec3::ZERO };
             let mut weight = parts;
             weight.wrong += u32::from(known) + u32::from(on_a_line([a, b, c]));
-            let mut bend = |other: DVec3, edge: DVec3| self.bend(&mut weight, normal.dot(other), edge);
+            let mut bend = |other: DVec3, edge: DVec3| {
+                if other != DVec3::ZERO {
+                    self.bend(&mut weight, normal.dot(other), edge);
+                }
+            };
             bend(self.at(from, apex).normal, b - a);
             bend(self.at(apex, to).normal, c - b);
             if let Some(other) = closing {
                 bend(other, c - a);
             }
             let squares = (b - a).length_squared() + (c - b).length_squared() + (c - a).length_squared();
-            weight.sum += match self.rule {
+            weight.sum += match self.task.rule {
                 Rule::Bend => length / 2.0 + SHAPE * squares,
                 Rule::Planes => 1e-4 * (length / 2.0 + SHAPE * squares) / squares.sqrt().max(f64::MIN_POSITIVE),
             };
@@ -189,7 +212,7 @@ impl Table<'_> {
     /// Adds a bend along an edge to a weight.
     fn bend(&self, weight: &mut Weight, cosine: f64, edge: DVec3) {
         let bend = (1.0 - cosine).max(0.0);
-        match self.rule {
+        match self.task.rule {
             Rule::Bend => weight.bend = weight.bend.max((bend / STEP).round() as u32),
             Rule::Planes => weight.sum += edge.length() * (bend / SHARP).min(1.0).sqrt(),
         }

@@ -15,9 +15,10 @@
 //! - a rim beside which the triangles lie in a few planes that meet in a line or a point: the lid goes on with these planes, up to the line or point. Such are missing pieces at an edge or a corner of a box;
 //! - a rim of at most five vertices over which the triangles of least bend are bent by less than 10°, against each other and across the rim: missing triangles.
 //!
-//! Everything else it closes smoothly.
+//! Everything else it closes smoothly. Where one sharp edge runs into the hole and out of it, the edge is continued through the lid.
 
 mod boundary;
+mod creases;
 mod fair;
 mod flat;
 mod minimal;
@@ -159,12 +160,18 @@ pub fn lid(around: &Surroundings<'_>, rim: &Rim, options: &FillOptions) -> Resul
             None => (Style::Smooth, None),
         },
     };
-    let cover = cover.unwrap_or_else(|| least(&boundary, rim));
-    let plain = finished(&boundary, rim, around, cover, style);
+    let cover = match cover {
+        Some(cover) => cover,
+        None if style == Style::Smooth => smooth_cover(&boundary, rim, around),
+        None => least(&boundary, rim),
+    };
+    // What lies in planes does not know which edges the mesh has.
+    let other = || Cover { triangles: minimal::triangulate(&boundary, Rule::Bend), added: Vec::new() };
+    let made = finished(&boundary, rim, around, cover, style);
+    let (plain, mut sheet) = made.or_else(|_| finished(&boundary, rim, around, other(), style))?;
     if style == Style::Flat {
-        return plain.map(|(lid, _)| lid);
+        return Ok(plain);
     }
-    let (plain, mut sheet) = plain?;
     refine::refine(&mut sheet, options.most_vertices);
     fair::fair(&mut sheet, around, rim, boundary.scale);
     // What cannot be shaped well stays as it was.
@@ -220,6 +227,14 @@ fn flat_cover(boundary: &Boundary, rim: &Rim, diameter: f64, style: Style) -> Op
     }
     let triangles = minimal::triangulate(boundary, Rule::Bend);
     is_slight(boundary, &triangles).then_some(Cover { triangles, added: Vec::new() })
+}
+
+/// What a smooth lid is made from: the triangles of least weight, divided along a sharp edge that runs through the hole.
+fn smooth_cover(boundary: &Boundary, rim: &Rim, around: &Surroundings<'_>) -> Cover {
+    let divided = creases::along_crease(boundary, around, rim);
+    // Where the curve of the edge spoils the lid, it is made without.
+    let sound = |cover: &Cover| Sheet::new(boundary, &cover.triangles, &cover.added).is_ok();
+    divided.filter(sound).unwrap_or_else(|| least(boundary, rim))
 }
 
 /// Whether no two triangles are bent much against each other, nor against those beside the rim.

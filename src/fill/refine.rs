@@ -18,8 +18,10 @@ pub(super) fn refine(sheet: &mut Sheet<'_>, most: usize) {
     let rim = sheet.below() as usize;
     let length = |k: usize| sheet.points[k].distance(sheet.points[(k + 1) % rim]);
     let mut scale: Vec<f64> = (0..rim).map(|k| (length(k) + length((k + rim - 1) % rim)) / 2.0).collect();
+    let mean = scale.iter().sum::<f64>() / rim as f64;
     scale.push(0.0);
-    let density = DENSITY.min(allowed(sheet, &scale, most));
+    scale.resize(sheet.points.len(), mean);
+    let density = DENSITY.min(allowed(sheet, mean, most));
     for _ in 0..ROUNDS {
         let mut coarse: Vec<(f64, u32)> = Vec::new();
         for t in 0..sheet.triangle_ids() {
@@ -37,7 +39,7 @@ pub(super) fn refine(sheet: &mut Sheet<'_>, most: usize) {
         }
         // The coarsest first, so that the vertices are spread evenly where they do not suffice.
         coarse.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        coarse.truncate(most + rim + 1 - sheet.points.len());
+        coarse.truncate((most + rim + 1).saturating_sub(sheet.points.len()));
         if coarse.is_empty() {
             return;
         }
@@ -57,9 +59,8 @@ fn mean_of(scale: &[f64], corners: [u32; 3]) -> f64 {
 }
 
 /// The density at which the lid gets about `most` vertices, from its area and the mean scale of its rim.
-fn allowed(sheet: &Sheet<'_>, scale: &[f64], most: usize) -> f64 {
+fn allowed(sheet: &Sheet<'_>, mean: f64, most: usize) -> f64 {
     let area: f64 = sheet.triangles().iter().map(|&t| area(sheet.corners(t))).sum();
-    let mean = scale.iter().sum::<f64>() / (scale.len() - 1) as f64;
     // A lid of equilateral triangles with edges as long as the scale has one vertex for each of its rhombs.
     let wanted = area / (mean * mean * 0.75f64.sqrt()).max(f64::MIN_POSITIVE);
     DENSITY * (most as f64 / wanted.max(1.0)).sqrt()

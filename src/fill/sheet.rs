@@ -18,6 +18,8 @@ const CREASE: f64 = 0.866;
 pub(super) struct Sheet<'a> {
     boundary: &'a Boundary,
     topology: HalfEdges,
+    /// How many of the vertices that come after the one below stay where they are, with the edges between those that follow each other.
+    pub(super) held: usize,
     /// Positions of all vertices; that of the vertex below means nothing.
     pub(super) points: Vec<DVec3>,
 }
@@ -32,7 +34,7 @@ impl<'a> Sheet<'a> {
         let mut points = boundary.points.clone();
         points.push(DVec3::ZERO);
         points.extend(added);
-        Ok(Self { boundary, topology, points })
+        Ok(Self { boundary, topology, held: added.len(), points })
     }
 
     /// The number of the vertex that is not part of the lid, which is also that of the points of the rim.
@@ -92,6 +94,12 @@ impl<'a> Sheet<'a> {
         }
     }
 
+    /// Whether a vertex is one of those that were added first and stay.
+    fn is_held(&self, v: u32) -> bool {
+        let below = self.below() as usize;
+        (below + 1..=below + self.held).contains(&(v as usize))
+    }
+
     fn should_turn(&self, half: u32) -> bool {
         let twin = self.topology.twin(half);
         let quad = [
@@ -100,7 +108,10 @@ impl<'a> Sheet<'a> {
             self.topology.apex(half),
             self.topology.apex(twin),
         ];
-        if quad.contains(&self.below()) || self.boundary.is_joined(quad[2], quad[3]) {
+        if quad.contains(&self.below())
+            || (self.is_held(quad[0]) && self.is_held(quad[1]))
+            || self.boundary.is_joined(quad[2], quad[3])
+        {
             return false;
         }
         let [a, b, c, d] = quad.map(|v| self.points[v as usize]);

@@ -174,12 +174,17 @@ fn a_lid_does_not_depend_on_numbers() {
 
 #[test]
 fn an_edge_of_the_mesh_is_not_made_again() {
-    // Two triangles of a square, bent: the lid over the four edges takes the other diagonal.
-    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.3], [1.0, 1.0, 0.0], [0.0, 1.0, 0.3]].map(DVec3::from);
-    let sheet = TriMesh { positions: corners.to_vec(), triangles: vec![[0, 1, 2], [0, 2, 3]] };
-    for style in [Style::Auto, Style::Flat, Style::Smooth] {
-        let (whole, _) = closed(&sheet, style);
-        assert!(HalfEdges::new(&whole.triangles, whole.positions.len()).is_ok());
+    // Two triangles of a square, bent or flat: the lid over the four edges takes the other diagonal.
+    for height in [0.3, 0.0] {
+        for diagonal in [[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]] {
+            let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+            let corners = [0, 1, 2, 3].map(|k| DVec3::new(square[k][0], square[k][1], height * (k % 2) as f64));
+            let sheet = TriMesh { positions: corners.to_vec(), triangles: diagonal.to_vec() };
+            for style in [Style::Auto, Style::Flat, Style::Smooth] {
+                let (whole, _) = closed(&sheet, style);
+                assert!(HalfEdges::new(&whole.triangles, whole.positions.len()).is_ok());
+            }
+        }
     }
 }
 

@@ -100,6 +100,13 @@ fn holes_of_a_cylinder_are_closed_round_and_flat() {
 }
 
 #[test]
+fn a_sharp_edge_goes_on_through_a_hole() {
+    let cylinder = cylinder(96, 30);
+    let rim = DVec3::new(0.0, 1.0, 1.0);
+    assert_near(&cylinder, to_cylinder, &[0.2, 0.4, 0.6].map(|radius| (rim, radius, Style::Smooth, 0.004, 0.002)));
+}
+
+#[test]
 fn holes_of_a_cube_are_closed_exactly() {
     let [face, edge, corner] = [DVec3::new(0.12, 0.03, 1.0), DVec3::new(1.0, 0.03, 1.0), DVec3::ONE];
     let exact = |at: DVec3, radius: f64| (at, radius, Style::Flat, 1e-15, 1e-15);
