@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::boundary::{Boundary, normal};
 use super::flat::Cover;
-use super::minimal::{Rule, of_points};
+use super::minimal::of_points;
 use super::{Rim, Surroundings};
 
 /// Cosine of 40°: edges that are bent more are sharp.
@@ -36,21 +36,18 @@ pub(super) fn sharp_edges(around: &Surroundings<'_>, vertex: u32) -> Vec<u32> {
     found
 }
 
-/// The direction in which the sharp edge that ends at a vertex goes on; `None` where none or several end there.
+/// The direction in which the sharp edge that ends at a vertex goes on; `None` where none or several end there, or where it is one
+/// edge alone, as noise makes them.
 fn direction(around: &Surroundings<'_>, vertex: u32) -> Option<DVec3> {
     let at = |v: u32| around.mesh().positions[v as usize];
     let ends = sharp_edges(around, vertex);
     let &[before] = &ends[..] else { return None };
     let last = (at(vertex) - at(before)).try_normalize()?;
     let earlier: Vec<u32> = sharp_edges(around, before).into_iter().filter(|&v| v != vertex).collect();
-    if let &[first] = &earlier[..] {
-        let first = (at(before) - at(first)).try_normalize()?;
-        if first.dot(last) > FOLLOWS {
-            // The tangent at the end of a curve turns on from its last chord by half as much as the chords turn.
-            return (last * 1.5 - first * 0.5).try_normalize();
-        }
-    }
-    Some(last)
+    let &[first] = &earlier[..] else { return None };
+    let first = (at(before) - at(first)).try_normalize()?;
+    // The tangent at the end of a curve turns on from its last chord by half as much as the chords turn.
+    if first.dot(last) > FOLLOWS { (last * 1.5 - first * 0.5).try_normalize() } else { None }
 }
 
 /// The lid over a rim into which one sharp edge runs and out of which it comes, divided along that edge. The new vertices are those on the edge.
@@ -96,7 +93,7 @@ pub(super) fn along_crease(boundary: &Boundary, around: &Surroundings<'_>, rim: 
         }
         // Nothing is known of what lies beyond the sharp edge.
         beside.resize(numbers.len(), DVec3::ZERO);
-        of_points(boundary, &points, Rule::Bend, &numbers, &beside, &mut triangles);
+        of_points(boundary, &points, &numbers, &beside, &mut triangles);
     }
     Some(Cover { triangles, added })
 }

@@ -19,7 +19,7 @@ use super::skyline::{Factor, Order};
 use super::{Rim, Surroundings};
 
 /// How often the plate is solved for at most.
-const STEPS: usize = 6;
+pub(super) const STEPS: usize = 6;
 
 /// The lid is done when no vertex moves farther than this share of the rim's diameter.
 const STILL: f64 = 2e-4;
@@ -60,15 +60,15 @@ struct Laplacian {
     closed: Vec<bool>,
 }
 
-/// Moves the inner vertices of a lid.
-pub(super) fn fair(sheet: &mut Sheet<'_>, around: &Surroundings<'_>, rim: &Rim, scale: f64) {
+/// Moves the inner vertices of a lid, in so many steps at most.
+pub(super) fn fair(sheet: &mut Sheet<'_>, around: &Surroundings<'_>, rim: &Rim, scale: f64, steps: usize) {
     let mut surface = Surface::new(sheet, around, rim, scale);
     if surface.free().is_empty() {
         return;
     }
     let diameter = rim.diameter * scale;
     let mut last = f64::INFINITY;
-    for step in 0..STEPS {
+    for step in 0..steps {
         let laplacian = Laplacian::new(&surface.points, surface.all(sheet));
         let order = surface.order(&laplacian);
         let bent = (step > 0).then(|| surface.rest(&laplacian, &order, diameter)).flatten();

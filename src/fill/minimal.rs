@@ -3,11 +3,7 @@
 //! Barequet and Sharir (Filling gaps in the boundary of a polyhedron, 1995) triangulate a loop in space as one triangulates a polygon: the best way for the part from
 //! point i to point j is a triangle over the chord from i to j with a point m between them, and the best ways for the parts from i to m and from m to j. All parts are done by
 //! growing length, in time of the third power of the number of points. Liepa (Filling holes in meshes, 2003) judges by the largest angle by which two triangles that share an
-//! edge are bent against each other, also across the rim, and between equals by the area. That is [`Rule::Bend`].
-//!
-//! The largest angle alone would cut a corner off: over a missing piece of an edge of a box it prefers a bevel of two bends of 45° to the true edge of one bend of 90°.
-//! [`Rule::Planes`] sums over the edges their length times the bend, where every bend above 20° counts as the same, so that triangles lie in the planes of their neighbours and are
-//! bent along as few edges as possible.
+//! edge are bent against each other, also across the rim, and between equals by the area.
 //!
 //! Loops that are too long for the third power are done in two steps: some points, evenly chosen along the loop, are triangulated first, and then
 //! every part of the loop between two of them against its chord. For n points that are √n parts of √n points each, and the time is that of the second power of n.
@@ -22,20 +18,8 @@ pub(super) const AT_ONCE: usize = 160;
 /// Steps of (1 − cosine) in which bends are told apart, so that rounding does not decide between flat triangles: 0.8° near zero.
 const STEP: f64 = 1e-4;
 
-/// The bend, as 1 − cosine, from which bends count as equal under [`Rule::Planes`]: 20°.
-const SHARP: f64 = 0.06;
-
 /// The share of the squares of the edges beside the area: it decides where all ways have the same area.
 const SHAPE: f64 = 0.01;
-
-/// What the best triangulation is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Rule {
-    /// The least of the largest bends, then the least area.
-    Bend,
-    /// The fewest and shortest bent edges.
-    Planes,
-}
 
 /// How bad a triangulation is: the parts count in their order.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
@@ -44,7 +28,7 @@ struct Weight {
     wrong: u32,
     /// The largest bend, in steps.
     bend: u32,
-    /// Area and shape, or bent length.
+    /// Area and shape.
     sum: f64,
 }
 
@@ -69,11 +53,11 @@ struct Part {
 
 /// The triangles over the rim, in numbers of its points. They may be wrong (without an area, or over an edge that the mesh has) only where the loop leaves no other
 /// way, or where it is too long to try all.
-pub(super) fn triangulate(boundary: &Boundary, rule: Rule) -> Vec<[u32; 3]> {
+pub(super) fn triangulate(boundary: &Boundary) -> Vec<[u32; 3]> {
     let beside: Vec<DVec3> = (0..boundary.len()).map(|edge| boundary.normal_beside(edge)).collect();
     let mut triangles = Vec::with_capacity(boundary.len() - 2);
     let all: Vec<u32> = (0..boundary.len() as u32).collect();
-    of_points(boundary, &boundary.points, rule, &all, &beside, &mut triangles);
+    of_points(boundary, &boundary.points, &all, &beside, &mut triangles);
     triangles
 }
 
@@ -81,12 +65,11 @@ pub(super) fn triangulate(boundary: &Boundary, rule: Rule) -> Vec<[u32; 3]> {
 pub(super) fn of_points(
     boundary: &Boundary,
     places: &[DVec3],
-    rule: Rule,
     points: &[u32],
     beside: &[DVec3],
     triangles: &mut Vec<[u32; 3]>,
 ) {
-    of_loop(&Task { boundary, places, rule }, points, beside, triangles);
+    of_loop(&Task { boundary, places }, points, beside, triangles);
 }
 
 /// What is asked of all loops of a rim.
@@ -95,7 +78,6 @@ struct Task<'a> {
     boundary: &'a Boundary,
     /// Where all points are.
     places: &'a [DVec3],
-    rule: Rule,
 }
 
 fn of_loop(task: &Task<'_>, points: &[u32], beside: &[DVec3], triangles: &mut Vec<[u32; 3]>) {
@@ -187,34 +169,23 @@ impl Table<'_> {
             let normal = if length > 0.0 { cross / length } else { DVec3::ZERO };
             let mut weight = parts;
             weight.wrong += u32::from(known) + u32::from(on_a_line([a, b, c]));
-            let mut bend = |other: DVec3, edge: DVec3| {
+            let mut bend = |other: DVec3| {
                 if other != DVec3::ZERO {
-                    self.bend(&mut weight, normal.dot(other), edge);
+                    let steps = ((1.0 - normal.dot(other)).max(0.0) / STEP).round();
+                    weight.bend = weight.bend.max(steps as u32);
                 }
             };
-            bend(self.at(from, apex).normal, b - a);
-            bend(self.at(apex, to).normal, c - b);
+            bend(self.at(from, apex).normal);
+            bend(self.at(apex, to).normal);
             if let Some(other) = closing {
-                bend(other, c - a);
+                bend(other);
             }
             let squares = (b - a).length_squared() + (c - b).length_squared() + (c - a).length_squared();
-            weight.sum += match self.task.rule {
-                Rule::Bend => length / 2.0 + SHAPE * squares,
-                Rule::Planes => 1e-4 * (length / 2.0 + SHAPE * squares) / squares.sqrt().max(f64::MIN_POSITIVE),
-            };
+            weight.sum += length / 2.0 + SHAPE * squares;
             if best.is_none_or(|best| weight < best.weight) {
                 best = Some(Part { weight, apex: apex as u32, normal });
             }
         }
         best.unwrap_or(Part { weight: NOTHING, apex: from as u32, normal: DVec3::ZERO })
-    }
-
-    /// Adds a bend along an edge to a weight.
-    fn bend(&self, weight: &mut Weight, cosine: f64, edge: DVec3) {
-        let bend = (1.0 - cosine).max(0.0);
-        match self.task.rule {
-            Rule::Bend => weight.bend = weight.bend.max((bend / STEP).round() as u32),
-            Rule::Planes => weight.sum += edge.length() * (bend / SHARP).min(1.0).sqrt(),
-        }
     }
 }

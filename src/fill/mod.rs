@@ -36,10 +36,10 @@ pub use rims::{Rim, rims};
 
 use self::boundary::{Boundary, normal, on_a_line};
 use self::flat::Cover;
-use self::minimal::Rule;
 use self::sheet::Sheet;
-use crate::mesh::TriMesh;
 use crate::mesh::around::Around;
+use crate::mesh::{TriMesh, intersecting_triangles};
+use crate::progress::Progress;
 
 /// How far from its plane a rim may lie, as a share of its diameter, to be closed flat where the surface beside leaves the plane.
 const FLAT: f64 = 0.02;
@@ -142,7 +142,7 @@ impl<'a> Surroundings<'a> {
 /// Closes a rim.
 ///
 /// The lid has the direction of the triangles around it, meets the rim edge by edge, has no triangle without an area, and repeats no edge of the mesh. It may
-/// meet other parts of the mesh, or itself where the rim is knotted. Coordinates alone decide: other numbers for the same vertices and triangles give the same lid.
+/// meet other parts of the mesh, or itself where the rim is knotted; a smooth lid that would meet itself or what is beside is shaped less. Coordinates alone decide: other numbers for the same vertices and triangles give the same lid.
 ///
 /// # Errors
 /// [`NoLid`] where the rim is none of this mesh, lies on a line, or can only be closed over edges that are there already.
@@ -160,22 +160,61 @@ pub fn lid(around: &Surroundings<'_>, rim: &Rim, options: &FillOptions) -> Resul
             None => (Style::Smooth, None),
         },
     };
-    let cover = match cover {
-        Some(cover) => cover,
-        None if style == Style::Smooth => smooth_cover(&boundary, rim, around),
-        None => least(&boundary, rim),
-    };
-    // What lies in planes does not know which edges the mesh has.
-    let other = || Cover { triangles: minimal::triangulate(&boundary, Rule::Bend), added: Vec::new() };
-    let made = finished(&boundary, rim, around, cover, style);
-    let (plain, mut sheet) = made.or_else(|_| finished(&boundary, rim, around, other(), style))?;
     if style == Style::Flat {
-        return Ok(plain);
+        // What lies in planes does not know which edges the mesh has.
+        let made = finished(&boundary, rim, around, cover.unwrap_or_else(|| least(&boundary, rim)), style);
+        return made.or_else(|_| finished(&boundary, rim, around, of_least_bend(&boundary), style)).map(|(lid, _)| lid);
     }
-    refine::refine(&mut sheet, options.most_vertices);
-    fair::fair(&mut sheet, around, rim, boundary.scale);
-    // What cannot be shaped well stays as it was.
-    Ok(of_sheet(&boundary, rim, around, &sheet, style).unwrap_or(plain))
+    smooth(&boundary, rim, around, options.most_vertices)
+}
+
+/// The smooth lid. It is divided along a sharp edge if one runs through the hole. What crosses itself is shaped less, or not at all.
+fn smooth(boundary: &Boundary, rim: &Rim, around: &Surroundings<'_>, most: usize) -> Result<Lid, NoLid> {
+    let style = Style::Smooth;
+    let divided = creases::along_crease(boundary, around, rim);
+    let covers = divided.into_iter().chain(in_one_plane(boundary, rim));
+    let covers = covers.chain(std::iter::once_with(|| of_least_bend(boundary)));
+    let mut last = Err(NoLid::Folded);
+    for cover in covers {
+        let (plain, mut sheet) = match finished(boundary, rim, around, cover, style) {
+            Ok(made) => made,
+            Err(error) => {
+                last = last.or(Err(error));
+                continue;
+            }
+        };
+        if crosses(around, rim, &plain) {
+            last = Ok(plain);
+            continue;
+        }
+        refine::refine(&mut sheet, most);
+        for steps in [fair::STEPS, 1, 0] {
+            let mut shaped = sheet.clone();
+            fair::fair(&mut shaped, around, rim, boundary.scale, steps);
+            let lid = of_sheet(boundary, rim, around, &shaped, style);
+            if let Some(lid) = lid.ok().filter(|lid| !crosses(around, rim, lid)) {
+                return Ok(lid);
+            }
+        }
+        last = Ok(plain);
+    }
+    last
+}
+
+/// Whether triangles of a lid meet each other, or those beside the rim, elsewhere than in what they share.
+fn crosses(around: &Surroundings<'_>, rim: &Rim, lid: &Lid) -> bool {
+    let mesh = around.mesh();
+    let mut beside: Vec<u32> = rim.vertices.iter().flat_map(|&v| around.of(v)).copied().collect();
+    beside.sort_unstable();
+    beside.dedup();
+    let triangles = lid.triangles.iter().chain(beside.iter().map(|&t| &mesh.triangles[t as usize]));
+    let added = |v: u32| lid.positions[v as usize - mesh.positions.len()];
+    let at = |v: u32| mesh.positions.get(v as usize).copied().unwrap_or_else(|| added(v));
+    let positions: Vec<DVec3> = triangles.flatten().map(|&v| at(v)).collect();
+    let triangles = (0..positions.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    // Nothing stops a search without a deadline; what is not known counts as crossing.
+    let found = intersecting_triangles(&TriMesh { positions, triangles }, &Progress::default());
+    found.map_or(true, |found| found.iter().any(|&t| (t as usize) < lid.triangles.len()))
 }
 
 /// The lid over three vertices.
@@ -225,16 +264,8 @@ fn flat_cover(boundary: &Boundary, rim: &Rim, diameter: f64, style: Style) -> Op
     if boundary.len() > FEW {
         return None;
     }
-    let triangles = minimal::triangulate(boundary, Rule::Bend);
+    let triangles = minimal::triangulate(boundary);
     is_slight(boundary, &triangles).then_some(Cover { triangles, added: Vec::new() })
-}
-
-/// What a smooth lid is made from: the triangles of least weight, divided along a sharp edge that runs through the hole.
-fn smooth_cover(boundary: &Boundary, rim: &Rim, around: &Surroundings<'_>) -> Cover {
-    let divided = creases::along_crease(boundary, around, rim);
-    // Where the curve of the edge spoils the lid, it is made without.
-    let sound = |cover: &Cover| Sheet::new(boundary, &cover.triangles, &cover.added).is_ok();
-    divided.filter(sound).unwrap_or_else(|| least(boundary, rim))
 }
 
 /// Whether no two triangles are bent much against each other, nor against those beside the rim.
@@ -250,11 +281,20 @@ fn is_slight(boundary: &Boundary, triangles: &[[u32; 3]]) -> bool {
 
 /// The triangles of least weight. Long rims that are flat are triangulated in their plane.
 fn least(boundary: &Boundary, rim: &Rim) -> Cover {
+    in_one_plane(boundary, rim).unwrap_or_else(|| of_least_bend(boundary))
+}
+
+/// The triangles in the plane of a long rim that is flat.
+fn in_one_plane(boundary: &Boundary, rim: &Rim) -> Option<Cover> {
     let numbers: Vec<u32> = (0..boundary.len() as u32).collect();
     let long = boundary.len() > minimal::AT_ONCE && rim.flatness <= 0.1 * rim.diameter;
-    let flat = long.then(|| flat::polygon(&boundary.points, &numbers, rim.plane.normal)).flatten();
-    let triangles = flat.unwrap_or_else(|| minimal::triangulate(boundary, Rule::Bend));
-    Cover { triangles, added: Vec::new() }
+    let triangles = long.then(|| flat::polygon(&boundary.points, &numbers, rim.plane.normal)).flatten()?;
+    Some(Cover { triangles, added: Vec::new() })
+}
+
+/// The triangles of least weight, however long the rim is.
+fn of_least_bend(boundary: &Boundary) -> Cover {
+    Cover { triangles: minimal::triangulate(boundary), added: Vec::new() }
 }
 
 /// The lid of these triangles after their edges have been turned, and the sheet that it was made from.

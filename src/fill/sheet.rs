@@ -14,7 +14,7 @@ const CREASE: f64 = 0.866;
 
 /// The triangles over a rim, closed below by a fan around one vertex more, so that the topology is that of a sphere. The points of the rim come first, then that
 /// vertex (see [`Sheet::below`]), then the vertices that were added.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Sheet<'a> {
     boundary: &'a Boundary,
     topology: HalfEdges,
