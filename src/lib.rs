@@ -46,6 +46,7 @@
 mod digits;
 pub mod progress;
 pub mod mesh;
+pub mod fill;
 pub mod lattice;
 pub mod io;
 pub mod ldi;
