@@ -59,6 +59,9 @@ const FEW: usize = 5;
 /// Cosine of 10°.
 const SLIGHT: f64 = 0.98481;
 
+/// Whether a smooth lid crosses itself is asked over rims of up to so many vertices: beyond, the answer takes longer than the lid.
+const ASKED: usize = 4000;
+
 /// How a rim is closed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Style {
@@ -142,7 +145,7 @@ impl<'a> Surroundings<'a> {
 /// Closes a rim.
 ///
 /// The lid has the direction of the triangles around it, meets the rim edge by edge, has no triangle without an area, and repeats no edge of the mesh. It may
-/// meet other parts of the mesh, or itself where the rim is knotted; a smooth lid that would meet itself or what is beside is shaped less. Coordinates alone decide: other numbers for the same vertices and triangles give the same lid.
+/// meet other parts of the mesh, or itself where the rim is knotted; a smooth lid that would meet itself or what is beside is shaped less (asked over rims of up to 4,000 vertices). Coordinates alone decide: other numbers for the same vertices and triangles give the same lid.
 ///
 /// # Errors
 /// [`NoLid`] where the rim is none of this mesh, lies on a line, or can only be closed over edges that are there already.
@@ -201,8 +204,11 @@ fn smooth(boundary: &Boundary, rim: &Rim, around: &Surroundings<'_>, most: usize
     last
 }
 
-/// Whether triangles of a lid meet each other, or those beside the rim, elsewhere than in what they share.
+/// Whether triangles of a lid meet each other, or those beside the rim, elsewhere than in what they share. Not asked over very long rims.
 fn crosses(around: &Surroundings<'_>, rim: &Rim, lid: &Lid) -> bool {
+    if rim.vertices.len() > ASKED {
+        return false;
+    }
     let mesh = around.mesh();
     let mut beside: Vec<u32> = rim.vertices.iter().flat_map(|&v| around.of(v)).copied().collect();
     beside.sort_unstable();
