@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 
+use crate::fill::Style;
 pub use crate::io::FileFormat as AnyFormat;
 use crate::ldi::Inside;
 use crate::orient::OrientMode;
@@ -64,6 +65,27 @@ impl From<InsideChoice> for Inside {
             InsideChoice::Positive => Self::Positive,
             InsideChoice::Nonzero => Self::Nonzero,
             InsideChoice::Odd => Self::Odd,
+        }
+    }
+}
+
+/// `--fill`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum FillChoice {
+    /// Flat where the rim lies in a plane at a sharp edge, or is short; else smooth
+    Auto,
+    /// As flat as the rim allows
+    Flat,
+    /// With the curvature of what is around
+    Smooth,
+}
+
+impl From<FillChoice> for Style {
+    fn from(choice: FillChoice) -> Self {
+        match choice {
+            FillChoice::Auto => Self::Auto,
+            FillChoice::Flat => Self::Flat,
+            FillChoice::Smooth => Self::Smooth,
         }
     }
 }

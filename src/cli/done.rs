@@ -18,6 +18,8 @@ pub fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
     add(sum(|o| o.both_sided), "triangle", "present in both directions counted once");
     add(sum(|o| o.flipped_in_patches), "triangle", "turned over to agree with the neighbours");
     add(sum(|o| o.flipped_patches), "patch", "turned over as a whole");
+    let lids = pipeline.holes.iter().map(|hole| hole.triangles).sum();
+    add(pipeline.holes.len(), "hole", &format!("closed with {}", words::plural(lids, "triangle")));
     add(pipeline.cut, "triangle", "cut along others first, so that what they cross in stays exact");
     if pipeline.ldi.silent_rays > 0 {
         let share = words::percent(pipeline.ldi.silent_rays, pipeline.ldi.rays);

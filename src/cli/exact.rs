@@ -4,13 +4,6 @@ use super::table::Row;
 use super::words;
 use crate::pipeline::{Plan, Report};
 
-/// Rounding that changes the volume by more than this part of it is told.
-const TELLING: f64 = 1e-5;
-
-/// What `--plan --method exact` says where an input has open edges.
-pub const UNSURE: &str =
-    "an input has open edges: unless they close once what touches is cut, there is no exact result (exit 3)";
-
 /// Whether all of a result is exact: cut where surfaces cross, or as it was, without any voxel.
 fn is_all(pipeline: &Report) -> bool {
     pipeline.exact.is_some() && !pipeline.lattice && !is_changed(pipeline)
@@ -36,12 +29,6 @@ pub fn rows(pipeline: &Report) -> Vec<Row> {
     if exact.separated > 0 {
         let vertices = words::plural(exact.separated, "vertex");
         rows.push(format!("{vertices} moved apart by a hair, where bodies touch at an edge or a corner alone"));
-    }
-    if exact.volume_error > TELLING {
-        let off = words::number(100.0 * exact.volume_error);
-        rows.push(format!(
-            "the numbers of the file are coarse for walls this thin: rounding to them changes the volume by {off} %"
-        ));
     }
     rows.into_iter().map(|text| ("exact", text)).collect()
 }

@@ -18,12 +18,12 @@ use super::result::RunResult;
 use super::session::Session;
 use super::solid_args::SolidArgs;
 use super::target::Target;
-use super::{backend, doubts, exact, keep, limits, machine, map, negative, summary, table, weights, words};
+use super::{backend, doubts, keep, limits, machine, map, negative, summary, table, weights, words};
 use crate::fit::{FitOptions, rounded};
 use crate::io::{Colours, Format, Loaded, Paint, Unit};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, Solid, TriMesh, Validity, validate};
-use crate::pipeline::{self, Advice, Method, Operand, Options, Precision, VoxelSize, Work};
+use crate::pipeline::{self, Advice, Operand, Options, Precision, VoxelSize, Work};
 use crate::progress::Stage;
 
 /// Meshes and what is to be made of them.
@@ -84,6 +84,7 @@ fn options(
         method: args.method.into(),
         orient: args.orient.into(),
         inside: args.inside.into(),
+        fill: args.fill.into(),
         vote: args.vote.into(),
         collapse: !args.no_collapse,
         // What the textures take is taken already.
@@ -125,6 +126,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
         "inside": options.inside,
+        "fill": options.fill,
         "vote": options.vote,
         "backend": options.backend,
         "collapse": options.collapse,
@@ -169,9 +171,6 @@ fn plan(
     };
     let plan = planned(options)?;
     report.result = Some(RunResult::Plan { plan });
-    if options.method == Method::Exact && job.change.is_none() && plan.dims != [0; 3] {
-        report.warnings.push(exact::UNSURE.into());
-    }
     if !args.common.json {
         let unit = unit.map(|unit| unit.to_string());
         let text = table::table(&summary::plan(&plan, unit.as_deref()));

@@ -6,7 +6,7 @@ use clap::parser::ValueSource;
 use clap::{ArgMatches, Args};
 
 use super::backend::BackendChoice;
-use super::choices::{InsideChoice, OrientChoice, SolidMethod, VoteChoice};
+use super::choices::{FillChoice, InsideChoice, OrientChoice, SolidMethod, VoteChoice};
 use super::exit::Failure;
 use super::keep::KeepArgs;
 use super::length::{Simplify, parse_size};
@@ -36,6 +36,9 @@ pub struct SolidArgs {
     /// Which part of space is inside where closed surfaces lie in each other or overlap
     #[arg(long, value_enum, default_value_t = InsideChoice::Positive)]
     pub inside: InsideChoice,
+    /// How holes are closed that a lid over their rim alone closes; others are closed from voxels
+    #[arg(long, value_enum, default_value_t = FillChoice::Auto)]
+    pub fill: FillChoice,
     /// How rays that disagree are settled
     #[arg(long, value_enum, default_value_t = VoteChoice::Winding)]
     pub vote: VoteChoice,

@@ -31,6 +31,7 @@ mod skyline;
 mod tests;
 
 use glam::DVec3;
+use serde::Serialize;
 
 pub use rims::{Rim, rims};
 
@@ -63,7 +64,9 @@ const SLIGHT: f64 = 0.98481;
 const ASKED: usize = 4000;
 
 /// How a rim is closed.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
 pub enum Style {
     /// Flat or smooth, by what the rim and the surface beside it look like; see [the rule](self#which-lid).
     #[default]

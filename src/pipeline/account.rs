@@ -150,7 +150,8 @@ pub(super) fn why_nothing(survey: &Survey, finest: f64) -> NothingEnclosed {
 pub(super) fn finished(mut outcome: Draft, apart: &Apart, stages: Stages<'_>) -> Draft {
     let report = &mut outcome.report;
     report.standing = apart.report();
-    if report.exact.is_some() {
+    let has_lids = apart.operands() == 1 && !report.holes.is_empty();
+    if report.exact.is_some() && !has_lids {
         // What was made whole first has been judged already.
         let found = topology::of_exact(&outcome.mesh, &outcome.sources, apart);
         let topology::Found { after, buried } = found;
@@ -161,6 +162,8 @@ pub(super) fn finished(mut outcome: Draft, apart: &Apart, stages: Stages<'_>) ->
     } else {
         report.topology = Some(topology::compared(&outcome.mesh, &outcome.sources, apart));
         let words = warnings(report);
+        report.warnings.extend(words);
+        let words = rounded(report);
         report.warnings.extend(words);
     }
     report.stages = stages.finish();

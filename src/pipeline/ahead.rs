@@ -1,6 +1,7 @@
 //! What is known of a run before it is run: what has to be made, and which way that will go.
 
 use super::apart::Apart;
+use super::holes::closed;
 use super::{BooleanError, Method, Options};
 use crate::ldi::Expression;
 use crate::mesh::edges::Edges;
@@ -12,7 +13,7 @@ use crate::survey::Soup;
 /// Which way a run will go.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Way {
-    /// What touches is cut exactly.
+    /// What touches is cut exactly, with lids over what has only holes.
     Exact,
     /// The operands with these numbers are made whole by themselves, from voxels, and all are cut exactly after that.
     Sealed(Vec<usize>),
@@ -36,25 +37,26 @@ impl Ahead {
         let soup = Soup::of(operands, options.orient, &progress)?.with_inside(options.inside);
         // Which shells stand does not depend on the expression, only what becomes of them does.
         let apart = Apart::find(&soup, &Expression::union(operands.len()), options, &progress)?;
-        let rest = apart.rest(&soup).mesh;
+        let rest = apart.rest(&soup);
         let keeps = options.fit.is_some_and(|fit| !fit.rebuild);
         let way = match options.method {
-            _ if rest.triangles.is_empty() || !keeps => Way::Voxel,
+            _ if rest.mesh.triangles.is_empty() || !keeps => Way::Voxel,
             Method::Voxel => Way::Voxel,
             // There is no other way.
             Method::Exact => Way::Exact,
             Method::Auto => match unbalanced(operands, &apart) {
                 open if open.is_empty() || apart.open_balances() => Way::Exact,
                 open if operands.len() > 1 => Way::Sealed(open),
+                _ if closed(&rest, options, &progress)?.is_some() => Way::Exact,
                 _ => Way::Voxel,
             },
         };
         let touching = match apart.touching() {
             // Nothing has been looked for where no surface could have stood.
-            0 if way != Way::Voxel => intersecting_triangles(&rest, &progress)?.len(),
+            0 if way != Way::Voxel => intersecting_triangles(&rest.mesh, &progress)?.len(),
             touching => touching,
         };
-        Ok(Self { rest, touching, way })
+        Ok(Self { rest: rest.mesh, touching, way })
     }
 }
 
@@ -106,7 +108,9 @@ mod tests {
         assert_eq!(ahead(&[&one, &two], Method::Voxel).way, Way::Voxel);
         let mut open = two.clone();
         open.triangles.pop();
-        assert_eq!(ahead(&[&open], Method::Auto).way, Way::Voxel);
+        assert_eq!(ahead(&[&open], Method::Auto).way, Way::Exact);
+        let sheet = TriMesh { triangles: two.triangles[..2].to_vec(), ..two.clone() };
+        assert_eq!(ahead(&[&sheet], Method::Auto).way, Way::Voxel);
         // Beside others it is made whole first.
         assert_eq!(ahead(&[&one, &open], Method::Auto).way, Way::Sealed(vec![1]));
         // Neighbours that face opposite ways are turned first.

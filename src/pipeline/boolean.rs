@@ -122,6 +122,8 @@ impl Task<'_> {
                 if let Some(draft) = self.sealed(&closed, &rest, &mut stages)? {
                     return Ok(account::finished(draft, &apart, stages));
                 }
+            } else if let Exact::Done(draft) = job.lidded(&rest, &standing, &mut stages)? {
+                return Ok(account::finished(*draft, &apart, stages));
             } else if crosses && let Some(mut draft) = self.cut_first(&rest, &mut stages)? {
                 draft.report.stages = stages.finish();
                 return Ok(draft);

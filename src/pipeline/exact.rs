@@ -135,7 +135,7 @@ impl Job<'_> {
     }
 
     /// The same with flat parts simplified, where that is asked for of what is right already.
-    fn simplified(&self, draft: Draft) -> Result<Draft, BooleanError> {
+    pub(super) fn simplified(&self, draft: Draft) -> Result<Draft, BooleanError> {
         let Some(fit) = self.options.fit.filter(|fit| fit.simplify_kept > 0.0) else { return Ok(draft) };
         let classes = self.classes_of(&draft.sources);
         let Draft { mesh, sources, lattice, report } = draft;
@@ -144,7 +144,7 @@ impl Job<'_> {
     }
 
     /// What stands with what was cut beside it, unless rounding made the two touch.
-    fn beside_standing(&self, draft: Draft, standing: &Standing) -> Result<Exact, BooleanError> {
+    pub(super) fn beside_standing(&self, draft: Draft, standing: &Standing) -> Result<Exact, BooleanError> {
         if draft.mesh.triangles.is_empty() && standing.mesh.triangles.is_empty() {
             let alone = self.expression.operand_count() == 1;
             let why = if alone { NothingEnclosed::Nothing } else { NothingEnclosed::NoCommonPart };

@@ -112,6 +112,7 @@ impl Frame {
             self.place(&mut region.min);
             self.place(&mut region.max);
         }
+        report.holes.iter_mut().for_each(|hole| self.place(&mut hole.centre));
         if let Some(topology) = &mut report.topology {
             topology.lost.iter_mut().for_each(|lost| self.place(&mut lost.at));
         }

@@ -19,8 +19,10 @@ mod exact;
 mod exact_plan;
 mod field;
 mod frame;
+mod holes;
 mod hollow;
 mod kind;
+mod lids;
 mod morphology;
 mod offsets;
 mod operand;
@@ -64,9 +66,9 @@ pub use options::{Method, Options, Precision, SurfaceOptions, VoxelSize};
 pub use outcome::Outcome;
 pub use plan::{Plan, plan};
 pub use report::{
-    CanalReport, DrainReport, Dropped, HollowReport, LdiReport, LostBody, MorphologyReport, NothingEnclosed, Report,
-    StageTime, StandingReport, ThickenReport, ThinRegion, ThinReport, Topology, TopologyReport, TriangleCounts,
-    TriangleKind, Warning,
+    CanalReport, DrainReport, Dropped, FilledHole, HollowReport, LdiReport, LostBody, MorphologyReport,
+    NothingEnclosed, Report, StageTime, StandingReport, ThickenReport, ThinRegion, ThinReport, Topology,
+    TopologyReport, TriangleCounts, TriangleKind, Warning,
 };
 pub use sizing::{LatticeError, MAX_RESOLUTION};
 pub use source::TriangleSource;

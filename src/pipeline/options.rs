@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::backend::Backend;
+use crate::fill::Style;
 use crate::fit::FitOptions;
 use crate::ldi::Inside;
 use crate::orient::OrientMode;
@@ -39,6 +40,8 @@ pub struct Options {
     pub orient: OrientMode,
     /// Which winding numbers of an operand are inside.
     pub inside: Inside,
+    /// How holes are closed that a lid over their rim alone closes; others get the level ½ of the winding number, from voxels.
+    pub fill: Style,
     /// Voting rule.
     pub vote: VoteRule,
     /// The distance field near the surface; `None`: as the voting rule needs it.
@@ -113,6 +116,7 @@ impl Options {
             method: Method::default(),
             orient: OrientMode::Auto,
             inside: Inside::default(),
+            fill: Style::default(),
             vote: VoteRule::default(),
             robust: None,
             collapse,

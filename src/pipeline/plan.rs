@@ -164,7 +164,7 @@ pub fn plan<'a>(operands: impl IntoIterator<Item: Into<Operand<'a>>>, options: &
     match way {
         Way::Exact => return Ok(Plan::of_exact(h, given, touching)),
         Way::Sealed(open) => {
-            let alone = Options { method: Method::Voxel, voxel: VoxelSize::Length(h), ..*options };
+            let alone = Options { method: Method::Auto, voxel: VoxelSize::Length(h), ..*options };
             let parts = open.iter().map(|&n| plan([meshes[n]], &alone)).collect::<Result<Vec<Plan>, _>>()?;
             return Ok(Plan::of_sealed(parts.into_iter(), Plan::of_exact(h, given, touching)));
         }

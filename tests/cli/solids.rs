@@ -279,7 +279,19 @@ fn the_map_shows_what_closes_holes_and_the_fit_has_switches() {
     assert_eq!(map["triangles"], few);
     let text = String::from_utf8_lossy(&std::fs::read(folder.path().join("map.ply")).expect("a map")).into_owned();
     assert!(text.contains("property uchar red"), "the map has colours");
-    assert_eq!(report["result"]["pipeline"]["fit"]["kept"], 10);
+    let pipeline = &report["result"]["pipeline"];
+    assert_eq!((&pipeline["triangles"]["kept"], &pipeline["lattice"]), (&10.into(), &false.into()));
+    let holes = pipeline["holes"].as_array().expect("a list");
+    assert!(holes.len() == 1 && holes[0]["edges"] == 4 && holes[0]["style"] == "flat", "{holes:?}");
+    for fill in ["flat", "smooth"] {
+        let line = format!("repair testdata/open_cube.off -o OUT/out.off --force --fill {fill}");
+        run_in(&folder, &line).exits(0).says(&["1 hole closed with "]);
+        let report = run_in(&folder, &format!("{line} --json")).exits(0).json();
+        assert_eq!(
+            (&report["options"]["fill"], &report["result"]["pipeline"]["holes"][0]["style"]),
+            (&fill.into(), &fill.into())
+        );
+    }
     let (all, report) = repair("--simplify off --rebuild");
     assert_eq!(report["result"]["pipeline"]["fit"]["kept"], 0);
     let (raw, report) = repair("--no-fit");

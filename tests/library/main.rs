@@ -12,6 +12,7 @@ mod decimate;
 mod exact;
 mod field;
 mod field_language;
+mod fill;
 mod fit;
 #[cfg(feature = "gpu")]
 mod gpu;

@@ -6,7 +6,7 @@ use meshwright::ldi::Expression;
 use meshwright::mesh::{TriMesh, ValidateOptions, Validity, validate};
 use meshwright::orient::OrientMode;
 use meshwright::pipeline::{
-    BooleanError, LimitError, Options, Outcome, TriangleSource, VoxelSize, boolean, plan, repair,
+    BooleanError, LimitError, Method, Options, Outcome, TriangleSource, VoxelSize, boolean, plan, repair,
 };
 use meshwright::progress::Progress;
 use proptest::prelude::*;
@@ -104,7 +104,12 @@ fn a_missing_face_is_closed() {
     let mut open = unit_box(DVec3::ZERO);
     open.triangles.truncate(10);
     let (outcome, validity) = repaired(&open, 32);
-    close(validity.volume, 1.0, 0.02);
+    close(validity.volume, 1.0, 1e-12);
+    assert_eq!((outcome.report.holes.len(), outcome.solid.triangles.len()), (1, 12));
+    // So it is from voxels, with rays that cannot tell.
+    let voxels = Options { method: Method::Voxel, ..options(32) };
+    let outcome = repair(&open, &voxels, &Progress::none()).expect("a solid");
+    close(validate_volume(&outcome.solid), 1.0, 0.02);
     assert!(outcome.report.ldi.silent_rays > 0);
 }
 
@@ -155,12 +160,13 @@ fn limits_are_refused_with_what_would_work() {
     assert_eq!(repair(&far, &options(64), &Progress::none()).expect("a solid").solid, far);
     far.triangles.pop();
     far.positions.iter_mut().for_each(|p| *p *= 1e29);
-    assert!(matches!(repair(&far, &options(64), &Progress::none()), Err(BooleanError::Lattice(_))));
-    // What is right needs no memory; what is open does.
+    let voxels = |resolution| Options { method: Method::Voxel, ..options(resolution) };
+    assert!(matches!(repair(&far, &voxels(64), &Progress::none()), Err(BooleanError::Lattice(_))));
+    // What is right needs no memory; what is open does, where it is made from voxels.
     let mut solid = unit_box(DVec3::ZERO);
     assert!(repair(&solid, &Options { max_memory: Some(20_000_000), ..options(2000) }, &Progress::none()).is_ok());
     solid.triangles.pop();
-    let small = Options { max_memory: Some(20_000_000), ..options(2000) };
+    let small = Options { max_memory: Some(20_000_000), ..voxels(2000) };
     match repair(&solid, &small, &Progress::none()) {
         Err(BooleanError::Limit(LimitError::Memory { voxel_that_fits: Some(h), needed, .. })) => {
             assert!(needed > 20_000_000);
@@ -169,7 +175,7 @@ fn limits_are_refused_with_what_would_work() {
         }
         other => panic!("{other:?}"),
     }
-    assert!(plan(std::slice::from_ref(&solid), &options(2000)).expect("a plan").memory > 20_000_000);
+    assert!(plan(std::slice::from_ref(&solid), &voxels(2000)).expect("a plan").memory > 20_000_000);
     let missing = boolean(&[solid], &Expression::union(2), &options(32), &Progress::none());
     assert!(matches!(missing, Err(BooleanError::MissingOperand { operand: 1, given: 1 })));
 }

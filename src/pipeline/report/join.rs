@@ -16,6 +16,7 @@ impl Report {
         self.fit = both(self.fit, other.fit, with_fit);
         self.crumbs = Dropped::and(self.crumbs, other.crumbs);
         self.cut += other.cut;
+        self.holes.extend(other.holes);
         self.closed_triangles += other.closed_triangles;
         self.warnings.extend(other.warnings);
         self

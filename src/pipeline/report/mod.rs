@@ -1,5 +1,6 @@
 //! What a pipeline found and did, as data. The functions that fill it are beside the pipelines, in `account.rs`.
 
+mod holes;
 mod join;
 mod nothing;
 mod operations;
@@ -8,6 +9,7 @@ mod topology;
 mod triangles;
 mod warning;
 
+pub use holes::FilledHole;
 pub use nothing::NothingEnclosed;
 pub use operations::{CanalReport, DrainReport, HollowReport, MorphologyReport, ThickenReport};
 pub use thin::{ThinRegion, ThinReport};
@@ -43,6 +45,8 @@ pub struct Report {
     pub exact: Option<ArrangeReport>,
     /// Triangles of operands with holes that were cut where they cross each other, before rays were cast.
     pub cut: usize,
+    /// Holes that were closed from their rims alone, the longest first; where lids come from voxels, none are listed.
+    pub holes: Vec<FilledHole>,
     /// Bodies, voids and tunnels before and after; `None` where an operation changes them.
     pub topology: Option<TopologyReport>,
     /// Cleaning and orientation of each operand.
