@@ -193,7 +193,6 @@ fn smooth(boundary: &Boundary, rim: &Rim, around: &Surroundings<'_>, most: usize
             last = Ok(plain);
             continue;
         }
-        sheet.most_bend = sheet::FOLDED;
         refine::refine(&mut sheet, most);
         for steps in [fair::STEPS, 1, 0] {
             let mut shaped = sheet.clone();

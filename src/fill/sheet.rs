@@ -9,11 +9,8 @@ use crate::mesh::HalfEdges;
 /// An edge is turned only where the two angles opposite to it are larger together than 180° by more than this (as the sum of their cotangents).
 const GAIN: f64 = 1e-9;
 
-/// Cosine of 30°: edges of a flat lid that are bent by more are left as they are, and none is made.
+/// Edges bent by more than this (cosine of 30°) are left as they are, and none is made.
 const CREASE: f64 = 0.866;
-
-/// Cosine of 60°: the same for a lid that is to become smooth. The bends of the triangles that it starts with are no edges of the surface.
-pub(super) const FOLDED: f64 = 0.5;
 
 /// The triangles over a rim, closed below by a fan around one vertex more, so that the topology is that of a sphere. The points of the rim come first, then that
 /// vertex (see [`Sheet::below`]), then the vertices that were added.
@@ -23,8 +20,6 @@ pub(super) struct Sheet<'a> {
     topology: HalfEdges,
     /// How many of the vertices that come after the one below stay where they are, with the edges between those that follow each other.
     pub(super) held: usize,
-    /// Cosine of the bend above which edges are not turned.
-    pub(super) most_bend: f64,
     /// Positions of all vertices; that of the vertex below means nothing.
     pub(super) points: Vec<DVec3>,
 }
@@ -39,7 +34,7 @@ impl<'a> Sheet<'a> {
         let mut points = boundary.points.clone();
         points.push(DVec3::ZERO);
         points.extend(added);
-        Ok(Self { boundary, topology, held: added.len(), most_bend: CREASE, points })
+        Ok(Self { boundary, topology, held: added.len(), points })
     }
 
     /// The number of the vertex that is not part of the lid, which is also that of the points of the rim.
@@ -131,7 +126,7 @@ impl<'a> Sheet<'a> {
         let [new, beside] = [normal([d, c, a]), normal([c, d, b])];
         let whole = ((b - a).cross(c - a) + (d - a).cross(b - a)).normalize_or_zero();
         let flat = old == DVec3::ZERO || other == DVec3::ZERO;
-        let allowed = (flat || old.dot(other) > self.most_bend) && new.dot(beside) > self.most_bend;
+        let allowed = (flat || old.dot(other) > CREASE) && new.dot(beside) > CREASE;
         allowed && new.dot(whole) > 0.5 && beside.dot(whole) > 0.5
     }
 }
