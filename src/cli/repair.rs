@@ -1,6 +1,7 @@
 //! `repair IN -o OUT`.
 
 use super::exit::{Exit, Failure};
+use super::holes::LeaveArgs;
 use super::report::RunReport;
 use super::session::Session;
 use super::solid::{self, Job};
@@ -15,6 +16,9 @@ pub struct RepairArgs {
     /// The mesh to repair; all its shells together are one solid
     #[arg(value_name = "IN")]
     pub input: PathBuf,
+    /// Which holes are left open.
+    #[command(flatten)]
+    pub leave: LeaveArgs,
     /// Flags of the pipeline and its output.
     #[command(flatten)]
     pub solid: SolidArgs,
@@ -27,6 +31,7 @@ pub fn run(args: &RepairArgs, session: &Session, report: &mut RunReport) -> Resu
         names: Vec::new(),
         expression: Expression::Operand(0),
         change: None,
+        leave: Some(&args.leave),
         args: &args.solid,
     };
     solid::run(&job, session, report)

@@ -9,7 +9,7 @@ mod topology;
 mod triangles;
 mod warning;
 
-pub use holes::FilledHole;
+pub use holes::{HoleClosing, HoleReport, LidShape, NotLidded};
 pub use nothing::NothingEnclosed;
 pub use operations::{CanalReport, DrainReport, HollowReport, MorphologyReport, ThickenReport};
 pub use thin::{ThinRegion, ThinReport};
@@ -26,6 +26,7 @@ use crate::ldi::Inside;
 use crate::orient::OrientReport;
 use crate::progress::Stage;
 use crate::vote::VoteReport;
+use crate::zip::ZipReport;
 
 /// The account of one run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -45,8 +46,10 @@ pub struct Report {
     pub exact: Option<ArrangeReport>,
     /// Triangles of operands with holes that were cut where they cross each other, before rays were cast.
     pub cut: usize,
-    /// Holes that were closed from their rims alone, the longest first; where lids come from voxels, none are listed.
-    pub holes: Vec<FilledHole>,
+    /// What was done to close cracks of operands with open edges before anything was called a hole; `None` where none could be closed.
+    pub zip: Option<ZipReport>,
+    /// The holes of each operand, the longest first, and what closes them; none are listed where all surface is made from voxels as is asked for.
+    pub holes: Vec<HoleReport>,
     /// Bodies, voids and tunnels before and after; `None` where an operation changes them.
     pub topology: Option<TopologyReport>,
     /// Cleaning and orientation of each operand.
