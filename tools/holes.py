@@ -253,8 +253,9 @@ class Ours:
         if done.returncode:
             return {"refused": done.stderr.strip().splitlines()[-1] if done.stderr.strip() else f"exit {done.returncode}"}
         report = json.loads(done.stdout)
-        lids = [hole["style"] for hole in report["result"]["pipeline"]["holes"]]
-        return {"way": ", ".join(lids) or "voxels"}
+        holes = report["result"]["pipeline"]["holes"]
+        ways = [hole.get("closed_by", "lid") for hole in holes]
+        return {"way": ", ".join(way if isinstance(way, str) else " ".join(*way.items()) for way in ways) or "no hole"}
 
 
 class PyMeshFix:
@@ -401,6 +402,91 @@ def table(title, rows, names, found):
     print()
 
 
+def many_holes(count, random):
+    """A wavy sheet closed to a slab, with so many round holes in its top."""
+    side = 200
+    x, y = np.meshgrid(np.linspace(0, 1, side + 1), np.linspace(0, 1, side + 1), indexing="ij")
+    z = 0.05 + 0.01 * np.sin(9 * x) * np.cos(7 * y)
+    top = np.stack([x, y, z], 2)
+    frame = [top[0, ::-1], top[-1], top[:, 0], top[::-1, -1]]
+    walls = [sheet(np.stack([edge, edge * [1, 1, 0]])) for edge in frame]
+    low = sheet(top[::-1] * [1, 1, 0])
+    points, faces = sheet(top)
+    across = int(np.ceil(np.sqrt(count)))
+    cells = random.permutation(across * across)[:count]
+    at = (np.stack([cells // across, cells % across], 1) + 0.5) / across
+    gone = cKDTree(at).query(points[faces].mean(axis=1)[:, :2])[0] < 0.01
+    return facing_out(joined([(points, faces[~gone]), low, *walls]))
+
+
+def times(args, folder):
+    """Seconds over the number of holes, on a mesh that is otherwise the same."""
+    line(["holes", "triangles", "holes closed by lids", "s", "fill, s"])
+    print("|---|---|---|---|---|")
+    for count in (1, 10, 100, 300, 1000):
+        path, out = folder / f"many-{count}.obj", folder / "many.obj"
+        points, faces = many_holes(count, np.random.default_rng(count))
+        write_obj(path, points, faces)
+        command = [args.program, "repair", path, "-o", out, "--json", "-q"]
+        start = time.perf_counter()
+        done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+        whole = time.perf_counter() - start
+        report = json.loads(done.stdout)
+        lids = sum("lid" in hole["closed_by"] for hole in report["result"]["pipeline"]["holes"])
+        fill = sum(stage["seconds"] for stage in report["stages"] if stage["stage"] == "fill")
+        line([f"{count:,}", f"{len(faces):,}", f"{lids:,}", f"{whole:.2f}", f"{fill:.3f}"])
+
+
+def random_soup(random):
+    """A ball, a box or a torus without random parts, and with random triangles, turned triangles or a shell inside; seldom nothing but random triangles."""
+    kind = random.integers(5)
+    if kind == 4:
+        count = random.integers(4, 40)
+        points = random.integers(0, 4, (count, 3)).astype(float)
+        return points, random.integers(0, count, (count, 3))
+    points, faces = [lambda: sphere(2), lambda: box((1, 1, 1), 0.25), lambda: torus(2, 0.8, 16, 8), lambda: cylinder(12, 4)][kind]()
+    middles = points[faces].mean(axis=1)
+    keep = np.ones(len(faces), bool)
+    for _ in range(random.integers(1, 6)):
+        at = middles[random.integers(len(faces))]
+        keep &= np.linalg.norm(middles - at, axis=1) > random.uniform(0, 0.5)
+    keep &= random.random(len(faces)) > random.choice([0, 0.02, 0.2])
+    kept = faces[keep]
+    turned = random.random(len(kept)) < random.choice([0, 0, 0.1])
+    kept[turned] = kept[turned][:, ::-1]
+    if random.random() < 0.3:
+        points = points + random.normal(size=points.shape) * random.choice([1e-9, 0.01, 0.1])
+    if random.random() < 0.2:
+        points, kept = np.concatenate([points, points * 0.5]), np.concatenate([kept, kept[:, ::-1] + len(points)])
+    return points, kept
+
+
+def soups(args, folder):
+    """Random soups with holes: each becomes a valid solid, or is refused with a reason."""
+    found = {"valid": 0, "refused": 0}
+    reasons, wrong = {}, []
+    for seed in range(args.soups):
+        path, out = folder / "soup.obj", folder / "soup-out.obj"
+        out.unlink(missing_ok=True)
+        points, faces = random_soup(np.random.default_rng([17, seed]))
+        write_obj(path, points, faces)
+        command = [args.program, "repair", path, "-o", out, "--resolution", "32", "-q"]
+        done = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=300)
+        said = done.stderr.strip().splitlines()
+        if out.exists() and score.validity(*score.load(out)).get("valid"):
+            found["valid"] += 1
+        elif not out.exists() and done.returncode > 0 and said and "panicked" not in done.stderr:
+            found["refused"] += 1
+            reasons[said[0][:100]] = reasons.get(said[0][:100], 0) + 1
+        else:
+            wrong.append(seed)
+            shutil.copy(path, folder / f"wrong-soup-{seed}.obj")
+    print(f"{args.soups} soups: {found['valid']} valid, {found['refused']} refused, wrong: {wrong or 'none'}")
+    for reason, count in sorted(reasons.items(), key=lambda entry: -entry[1]):
+        print(f"  {count} times: {reason}")
+    sys.exit(1 if wrong else 0)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
@@ -409,12 +495,19 @@ def main() -> None:
     parser.add_argument("--sizes", default="2,5,10,20", help="widths of holes, in percent of the diagonal")
     parser.add_argument("--styles", default="auto,flat,smooth")
     parser.add_argument("--only", default="", metavar="WORD", help="holes with this word in their name")
+    parser.add_argument("--times", action="store_true", help="seconds over the number of holes")
+    parser.add_argument("--soups", type=int, default=0, metavar="N", help="random soups with holes")
     parser.add_argument("--each", action="store_true", help="a line for each result")
     parser.add_argument("--json", type=Path, help="where to write all results")
     args = parser.parse_args()
     folder = Path(tempfile.gettempdir()) / "meshwright-holes"
     folder.mkdir(exist_ok=True)
-    accuracy(args, folder)
+    if args.times:
+        times(args, folder)
+    elif args.soups:
+        soups(args, folder)
+    else:
+        accuracy(args, folder)
 
 
 if __name__ == "__main__":
