@@ -406,7 +406,7 @@ def table(title, rows, names, found):
 
 def many_holes(count, random):
     """A wavy sheet closed to a slab, with so many round holes in its top."""
-    side = 200
+    side = 128
     x, y = np.meshgrid(np.linspace(0, 1, side + 1), np.linspace(0, 1, side + 1), indexing="ij")
     z = 0.05 + 0.01 * np.sin(9 * x) * np.cos(7 * y)
     top = np.stack([x, y, z], 2)
@@ -417,7 +417,7 @@ def many_holes(count, random):
     across = int(np.ceil(np.sqrt(count)))
     cells = random.permutation(across * across)[:count]
     at = (np.stack([cells // across, cells % across], 1) + 0.5) / across
-    gone = cKDTree(at).query(points[faces].mean(axis=1)[:, :2])[0] < 0.01
+    gone = cKDTree(at).query(points[faces].mean(axis=1)[:, :2])[0] < 0.008
     return facing_out(joined([(points, faces[~gone]), low, *walls]))
 
 

@@ -11,11 +11,11 @@ use super::flat::Cover;
 use super::minimal::of_loops;
 use super::{Rim, Surroundings};
 
-/// Radians, 30°: edges that are bent more are sharp.
-const SHARP: f64 = 0.5236;
+/// 30°: edges that are bent more are sharp.
+const SHARP: f64 = std::f64::consts::FRAC_PI_6;
 
-/// Radians, 15°: an edge that is bent by less is none that goes on through a hole.
-const WEAK: f64 = 0.2618;
+/// 15°: an edge that is bent by less is none that goes on through a hole.
+const WEAK: f64 = std::f64::consts::FRAC_PI_6 / 2.0;
 
 /// What edges beside the one that goes on are bent by at most, as a share of its bend.
 const ALONE: f64 = 0.7;
