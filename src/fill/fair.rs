@@ -13,7 +13,7 @@
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
-use super::creases::sharp_edges;
+use super::creases::is_sharp;
 use super::sheet::Sheet;
 use super::skyline::{Factor, Order};
 use super::{Rim, Surroundings};
@@ -109,12 +109,12 @@ impl Surface {
         let mut local = |v: u32| {
             *number.entry(v).or_insert_with(|| {
                 points.push(mesh.positions[v as usize] * scale);
-                sharp.push(!sharp_edges(around, v).is_empty());
+                sharp.push(is_sharp(around, v));
                 points.len() as u32 - 1
             })
         };
         let outside = all.iter().map(|&t| mesh.triangles[t as usize].map(&mut local)).collect();
-        let at_crease = rim.vertices.iter().map(|&v| !sharp_edges(around, v).is_empty()).collect();
+        let at_crease = rim.vertices.iter().map(|&v| is_sharp(around, v)).collect();
         let rim = rim.vertices.len();
         Self { at_crease, points, outside, rim, first: rim + 1 + sheet.held, end: sheet.points.len(), sharp }
     }

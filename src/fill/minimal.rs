@@ -3,20 +3,23 @@
 //! Barequet and Sharir (Filling gaps in the boundary of a polyhedron, 1995) triangulate a loop in space as one triangulates a polygon: the best way for the part from
 //! point i to point j is a triangle over the chord from i to j with a point m between them, and the best ways for the parts from i to m and from m to j. All parts are done by
 //! growing length, in time of the third power of the number of points. Liepa (Filling holes in meshes, 2003) judges by the largest angle by which two triangles that share an
-//! edge are bent against each other, also across the rim, and between equals by the area.
+//! edge are bent against each other, also across the rim, and between equals by the area. Where the rim itself is bent, as at an edge of the surface, one such angle is large in any case, and then the area alone decides: the
+//! edge is cut off. So the bends are summed here, one minus the cosine times the length of the edge, and the area with them.
 //!
 //! Loops that are too long for the third power are done in two steps: some points, evenly chosen along the loop, are triangulated first, and then
 //! every part of the loop between two of them against its chord. For n points that are √n parts of √n points each, and the time is that of the second power of n.
 
 use glam::DVec3;
+use rustc_hash::FxHashSet;
 
 use super::boundary::{Boundary, normal, on_a_line};
 
 /// Loops of up to so many points are done at once.
 pub(super) const AT_ONCE: usize = 160;
 
-/// Steps of (1 − cosine) in which bends are told apart, so that rounding does not decide between flat triangles: 0.8° near zero.
-const STEP: f64 = 1e-4;
+/// What a bend weighs: the area of a strip so many times as wide as the loop for each unit of (1 − cosine), along the edge. With 1 and with 4
+/// lids over bent rims are alike; at the rim of a cylinder 4 is better.
+const BEND: f64 = 4.0;
 
 /// The share of the squares of the edges beside the area: it decides where all ways have the same area.
 const SHAPE: f64 = 0.01;
@@ -26,18 +29,16 @@ const SHAPE: f64 = 0.01;
 struct Weight {
     /// Triangles without an area, and edges that the mesh has already.
     wrong: u32,
-    /// The largest bend, in steps.
-    bend: u32,
-    /// Area and shape.
+    /// Bends, area and shape.
     sum: f64,
 }
 
 /// Nothing to object.
-const NOTHING: Weight = Weight { wrong: 0, bend: 0, sum: 0.0 };
+const NOTHING: Weight = Weight { wrong: 0, sum: 0.0 };
 
 impl Weight {
     fn and(self, other: Self) -> Self {
-        Self { wrong: self.wrong + other.wrong, bend: self.bend.max(other.bend), sum: self.sum + other.sum }
+        Self { wrong: self.wrong + other.wrong, sum: self.sum + other.sum }
     }
 }
 
@@ -57,25 +58,32 @@ pub(super) fn triangulate(boundary: &Boundary) -> Vec<[u32; 3]> {
     let beside: Vec<DVec3> = (0..boundary.len()).map(|edge| boundary.normal_beside(edge)).collect();
     let mut triangles = Vec::with_capacity(boundary.len() - 2);
     let all: Vec<u32> = (0..boundary.len() as u32).collect();
-    of_points(boundary, &boundary.points, &all, &beside, &mut triangles);
+    of_loop(&Task { joined: &boundary.joined, places: &boundary.points }, &all, &beside, &mut triangles);
     triangles
 }
 
-/// Appends the triangles over a loop of some points, which may be others than those of the rim; `beside` has the normal across each edge, zero where none is known.
-pub(super) fn of_points(
-    boundary: &Boundary,
+/// The triangles over several loops that share points, which may be others than those of the rim. Each loop comes with the normals across its edges, zero where none is known. No
+/// two loops get the same edge, nor one of those pairs of points that are `joined`.
+pub(super) fn of_loops(
+    mut joined: FxHashSet<[u32; 2]>,
     places: &[DVec3],
-    points: &[u32],
-    beside: &[DVec3],
-    triangles: &mut Vec<[u32; 3]>,
-) {
-    of_loop(&Task { boundary, places }, points, beside, triangles);
+    loops: &[(Vec<u32>, Vec<DVec3>)],
+) -> Vec<[u32; 3]> {
+    let mut triangles: Vec<[u32; 3]> = Vec::new();
+    for (points, beside) in loops {
+        let first = triangles.len();
+        of_loop(&Task { joined: &joined, places }, points, beside, &mut triangles);
+        let edges = triangles[first..].iter().flat_map(|t| (0..3).map(|k| [t[k], t[(k + 1) % 3]]));
+        joined.extend(edges.map(|[a, b]| [a.min(b), a.max(b)]));
+    }
+    triangles
 }
 
 /// What is asked of all loops of a rim.
 #[derive(Clone, Copy)]
 struct Task<'a> {
-    boundary: &'a Boundary,
+    /// Pairs of points, the smaller number first, that are joined already.
+    joined: &'a FxHashSet<[u32; 2]>,
     /// Where all points are.
     places: &'a [DVec3],
 }
@@ -83,7 +91,9 @@ struct Task<'a> {
 fn of_loop(task: &Task<'_>, points: &[u32], beside: &[DVec3], triangles: &mut Vec<[u32; 3]>) {
     let count = points.len();
     if count <= AT_ONCE {
-        Table { task: *task, points, parts: Vec::new() }.fill(beside, triangles);
+        let far = |&v: &u32| task.places[v as usize].distance(task.places[points[0] as usize]);
+        let size = points.iter().map(far).fold(0.0, f64::max);
+        Table { task: *task, points, parts: Vec::new(), size }.fill(beside, triangles);
         return;
     }
     let parts = ((count as f64).sqrt().ceil() as usize).clamp(3, AT_ONCE);
@@ -118,6 +128,8 @@ struct Table<'a> {
     task: Task<'a>,
     points: &'a [u32],
     parts: Vec<Part>,
+    /// The largest distance of a point from the first one.
+    size: f64,
 }
 
 impl Table<'_> {
@@ -155,7 +167,8 @@ impl Table<'_> {
 
     /// The best way over the part from one point to another; `closing` is the normal across its chord, if that is known.
     fn best(&self, from: usize, to: usize, closing: Option<DVec3>) -> Part {
-        let known = closing.is_none() && self.task.boundary.is_joined(self.points[from], self.points[to]);
+        let ends = [self.points[from], self.points[to]];
+        let known = closing.is_none() && self.task.joined.contains(&[ends[0].min(ends[1]), ends[0].max(ends[1])]);
         let (a, c) = (self.place(from), self.place(to));
         let mut best: Option<Part> = None;
         for apex in from + 1..to {
@@ -169,19 +182,19 @@ impl Table<'_> {
             let normal = if length > 0.0 { cross / length } else { DVec3::ZERO };
             let mut weight = parts;
             weight.wrong += u32::from(known) + u32::from(on_a_line([a, b, c]));
-            let mut bend = |other: DVec3| {
+            let [mut bends, ab, bc, ca] = [0.0, a.distance(b), b.distance(c), c.distance(a)];
+            let mut bend = |other: DVec3, length: f64| {
                 if other != DVec3::ZERO {
-                    let steps = ((1.0 - normal.dot(other)).max(0.0) / STEP).round();
-                    weight.bend = weight.bend.max(steps as u32);
+                    bends += length * (1.0 - normal.dot(other)).max(0.0);
                 }
             };
-            bend(self.at(from, apex).normal);
-            bend(self.at(apex, to).normal);
+            bend(self.at(from, apex).normal, ab);
+            bend(self.at(apex, to).normal, bc);
             if let Some(other) = closing {
-                bend(other);
+                bend(other, ca);
             }
-            let squares = (b - a).length_squared() + (c - b).length_squared() + (c - a).length_squared();
-            weight.sum += length / 2.0 + SHAPE * squares;
+            let squares = ab * ab + bc * bc + ca * ca;
+            weight.sum += BEND * bends * self.size + length / 2.0 + SHAPE * squares;
             if best.is_none_or(|best| weight < best.weight) {
                 best = Some(Part { weight, apex: apex as u32, normal });
             }

@@ -15,7 +15,7 @@
 //! - a rim beside which the triangles lie in a few planes that meet in a line or a point: the lid goes on with these planes, up to the line or point. Such are missing pieces at an edge or a corner of a box;
 //! - a rim of at most five vertices over which the triangles of least bend are bent by less than 10°, against each other and across the rim: missing triangles.
 //!
-//! Everything else it closes smoothly. Where one sharp edge runs into the hole and out of it, the edge is continued through the lid.
+//! Everything else it closes smoothly. Where edges that are bent by more than 15°, much more than what is beside them, run into the hole and out of it, they are continued through the lid.
 
 mod boundary;
 mod creases;
@@ -176,10 +176,10 @@ pub fn lid(around: &Surroundings<'_>, rim: &Rim, options: &FillOptions) -> Resul
     smooth(&boundary, rim, around, options.most_vertices)
 }
 
-/// The smooth lid. It is divided along a sharp edge if one runs through the hole. What crosses itself is shaped less, or not at all.
+/// The smooth lid. It is divided along sharp edges that run through the hole. What crosses itself is shaped less, or not at all.
 fn smooth(boundary: &Boundary, rim: &Rim, around: &Surroundings<'_>, most: usize) -> Result<Lid, NoLid> {
     let style = Style::Smooth;
-    let divided = creases::along_crease(boundary, around, rim);
+    let divided = creases::along_creases(boundary, around, rim);
     let covers = divided.into_iter().chain(in_one_plane(boundary, rim));
     let covers = covers.chain(std::iter::once_with(|| of_least_bend(boundary)));
     let mut last = Err(NoLid::Folded);

@@ -139,6 +139,7 @@ impl<'a> Sheet<'a> {
         let [new, beside] = [normal([d, c, a]), normal([c, d, b])];
         let whole = ((b - a).cross(c - a) + (d - a).cross(b - a)).normalize_or_zero();
         let flat = old == DVec3::ZERO || other == DVec3::ZERO;
-        (flat || old.dot(other) > CREASE) && new.dot(beside) > CREASE && new.dot(whole) > 0.5 && beside.dot(whole) > 0.5
+        let allowed = (flat || old.dot(other) > CREASE) && new.dot(beside) > CREASE;
+        allowed && new.dot(whole) > 0.5 && beside.dot(whole) > 0.5
     }
 }
