@@ -24,6 +24,7 @@ mod flat;
 mod minimal;
 mod polygon;
 mod refine;
+mod region;
 mod rims;
 mod sheet;
 mod skyline;
@@ -33,6 +34,7 @@ mod tests;
 use glam::DVec3;
 use serde::Serialize;
 
+pub(crate) use region::region;
 pub use rims::{Rim, rims};
 
 use self::boundary::{Boundary, normal, on_a_line};
