@@ -2,6 +2,7 @@
 
 mod args;
 mod backend;
+mod base;
 mod boolean;
 mod change;
 mod choices;
@@ -35,6 +36,7 @@ mod keep;
 mod length;
 mod limits;
 mod machine;
+mod maker;
 mod map;
 mod misuse;
 mod morphology;

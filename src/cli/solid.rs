@@ -163,11 +163,15 @@ fn plan(
     let failed = |e: &dyn Advice| failure(&e, inputs, unit, args);
     // Of negative parts the plan of a change knows nothing: their difference comes first.
     let operands = || inputs.iter().take(expression.operand_count()).map(|input| Operand::from(&input.loaded));
-    let planned = |options: &Options| match (pipeline::plan(operands(), options), job.change) {
-        (Ok(plan), Some(change)) => {
-            Ok(plan.then(change.plan(&inputs[0].loaded.mesh, &options.surface(), scale, &failed)?))
+    let planned = |options: &Options| {
+        let mesh = &inputs[0].loaded.mesh;
+        if let Some(maker) = job.change.and_then(Change::instead) {
+            return maker.plan(mesh, options, scale, &failed);
         }
-        (plan, _) => plan.map_err(|e| failed(&e)),
+        match (pipeline::plan(operands(), options), job.change) {
+            (Ok(plan), Some(change)) => Ok(plan.then(change.plan(mesh, &options.surface(), scale, &failed)?)),
+            (plan, _) => plan.map_err(|e| failed(&e)),
+        }
     };
     let plan = planned(options)?;
     report.result = Some(RunResult::Plan { plan });
@@ -217,15 +221,10 @@ fn make(
     if let Ok(work) = Work::of(&meshes, options) {
         session.expect(&weights::of_solid(report.verb, &work, options.fit.as_ref()));
     }
-    let made = pipeline::boolean(operands.iter().copied(), expression, options, &session.progress);
     let failed = |e: &dyn Advice| failure(&e, inputs, unit, args);
-    let Changed { mut outcome, mut canal_of } = match job.change {
-        None => made.map(Changed::from).map_err(|e| failed(&e))?,
-        Some(change) => {
-            let (surface, progress) = (&options.surface(), &session.progress);
-            change.apply(made, &Site { operands: &operands, surface, scale, failed: &failed, progress }, report)?
-        }
-    };
+    let (surface, progress) = (&options.surface(), &session.progress);
+    let site = Site { operands: &operands, surface, scale, failed: &failed, progress };
+    let Changed { mut outcome, mut canal_of } = made(job, expression, options, &site, report)?;
     if let Some(volume) = args.drop_smaller {
         let least = volume.resolve(scale)?;
         let dropped = pipeline::drop_smaller(outcome, operands.iter().copied(), least, &session.progress);
@@ -261,6 +260,24 @@ fn make(
         return Err(keep::withheld(&lost, args.output.as_deref(), &doubts::better(report, name.as_deref())));
     }
     Ok(if guessed.is_none() && lost.is_empty() { exit } else { Exit::Limit })
+}
+
+/// The solid that is asked for.
+fn made(
+    job: &Job<'_>,
+    expression: &Expression,
+    options: &Options,
+    site: &Site<'_>,
+    report: &mut RunReport,
+) -> Result<Changed, Failure> {
+    if let Some(maker) = job.change.and_then(Change::instead) {
+        return maker.make(options, site, report).map(Changed::from);
+    }
+    let made = pipeline::boolean(site.operands.iter().copied(), expression, options, site.progress);
+    match job.change {
+        None => made.map(Changed::from).map_err(|e| (site.failed)(&e)),
+        Some(change) => change.apply(made, site, report),
+    }
 }
 
 /// Writes the result and judges the written file.

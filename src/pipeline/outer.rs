@@ -1,0 +1,281 @@
+//! The surface as a ball sees it from outside: inner skins, buried faces and parts go, and pinholes are closed.
+
+use glam::DVec3;
+
+use super::assembled::Assembled;
+use super::frame::Frame;
+use super::{
+    BooleanError, FilledHole, Operand, Options, OuterReport, Outcome, Plan, Precision, SheetSide, ThickenError,
+    ThickenOptions, VoxelSize, boolean, plan, sizing, thicken,
+};
+use crate::arrange::{ArrangeError, cut};
+use crate::digits;
+use crate::fill::{FillOptions, Surroundings, lid, rims};
+use crate::ldi::Expression;
+use crate::mesh::TriMesh;
+use crate::orient::OrientMode;
+use crate::outer::{Part, Parts, Reach, ReachError, judge, sights};
+use crate::progress::{Progress, Stage, Stopped};
+use crate::survey::{Soup, SoupError};
+
+/// Voxels to the thickness of a sheet, at least.
+const ACROSS: f64 = 5.0;
+
+/// Options of [`outer`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OuterOptions {
+    /// Diameter of the ball, model units: what is narrower is no way in.
+    pub ball: f64,
+    /// How thick sheets become that the ball sees from both sides, model units; `None`: they are an error.
+    pub thickness: Option<f64>,
+    /// How the solid is made of what is left, and the voxels of what is made thick. Which way triangles face is found by the ball, whatever [`Options::orient`] says.
+    pub solid: Options,
+}
+
+/// Why there is no outer skin. Lengths and places are in model units.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum OuterError {
+    /// The ball cannot be rolled around the surface.
+    #[error(transparent)]
+    Reach(#[from] ReachError),
+    /// Sheets have no thickness.
+    #[error("{}", sheets(*triangles, *at, *widest))]
+    Sheets {
+        /// How many triangles the ball sees from both sides.
+        triangles: usize,
+        /// One of them.
+        at: DVec3,
+        /// The diameter of the widest rim of these triangles.
+        widest: f64,
+    },
+    /// The triangles cannot be cut where they cross.
+    #[error(transparent)]
+    Cut(ArrangeError),
+    /// What is left is no solid.
+    #[error(transparent)]
+    Boolean(#[from] BooleanError),
+    /// Sheets could not be made thick.
+    #[error(transparent)]
+    Thicken(#[from] ThickenError),
+}
+
+fn sheets(triangles: usize, at: DVec3, widest: f64) -> String {
+    let at = at.to_array().map(digits::number).join(" ");
+    format!(
+        "the ball sees {} triangle{} from both sides, one at {at}: sheets that enclose nothing, or a surface with a hole that the ball \
+         passes; their widest rim is {} across",
+        digits::count(triangles),
+        if triangles == 1 { "" } else { "s" },
+        digits::number(widest)
+    )
+}
+
+impl From<Stopped> for OuterError {
+    fn from(stopped: Stopped) -> Self {
+        Self::Boolean(stopped.into())
+    }
+}
+
+impl From<SoupError> for OuterError {
+    fn from(error: SoupError) -> Self {
+        Self::Boolean(error.into())
+    }
+}
+
+/// The solid whose surface a ball sees that rolls around the operand. Triangles that it sees stay as they are, those that bound only what it does not come to go, and the rims that are
+/// left are closed by lids. What it sees from both sides is made thick, if that is asked for.
+///
+/// # Errors
+/// See [`OuterError`].
+pub fn outer<'a>(
+    operand: impl Into<Operand<'a>>,
+    options: &OuterOptions,
+    progress: &Progress,
+) -> Result<Outcome, OuterError> {
+    let operand: Operand<'a> = operand.into();
+    let (given, solid) = (operand.mesh, &options.solid);
+    check(given)?;
+    let frame = Frame::of(&[given], &solid.surface());
+    let mut found = Found::new(&frame.local(given), options, progress)?;
+    found.report.thickness = options.thickness.filter(|_| found.report.sheet_triangles > 0);
+    let (mut assembled, mut holes) = found.closed(solid);
+    frame.mesh(&mut assembled.mesh);
+    frame.mesh(&mut found.sheets);
+    holes.iter_mut().for_each(|hole| frame.place(&mut hole.centre));
+    let negative = operand.negative.map(Operand::from);
+    let operands: Vec<Operand<'_>> = [Operand { negative: None, ..operand }].into_iter().chain(negative).collect();
+    let outcome = match assembled.mesh.triangles.is_empty() {
+        true => None,
+        false => {
+            let whole = Operand { negative: operand.negative, ..Operand::from(&assembled.mesh) };
+            let keep = Options { orient: OrientMode::Keep, ..*solid };
+            let mut made = boolean([whole], &Expression::Operand(0), &keep, progress)?;
+            // What the ball saw is another thing than what the operand describes.
+            made.report.topology = None;
+            made.report.holes.splice(0..0, holes);
+            Some(assembled.told(made, &operands))
+        }
+    };
+    let mut outcome = match (outcome, options.thickness.filter(|_| !found.sheets.triangles.is_empty())) {
+        (Some(outcome), None) => outcome,
+        (outcome, thickness) => thickened(outcome, &found.sheets, thickness, options, &operands, progress)?,
+    };
+    outcome.report.orient = vec![found.orient];
+    outcome.report.outer = Some(found.report);
+    Ok(outcome)
+}
+
+/// What [`outer`] would cost.
+///
+/// # Errors
+/// Those of [`outer`] that come before anything is made.
+pub fn plan_outer(mesh: &TriMesh, options: &OuterOptions) -> Result<Plan, OuterError> {
+    check(mesh)?;
+    let (lattice, _, cost) = Reach::plan(mesh, options.ball)?;
+    let made = plan([mesh], &options.solid)?;
+    Ok(Plan {
+        voxel: lattice.h,
+        dims: lattice.dims.to_array(),
+        voxels_near_surface: cost.voxels,
+        memory: made.memory.max(cost.memory),
+        least_memory: made.least_memory.max(cost.memory),
+        seconds: made.seconds + cost.seconds,
+        ..made
+    })
+}
+
+fn check(mesh: &TriMesh) -> Result<(), BooleanError> {
+    mesh.check().map_err(|error| BooleanError::Index { operand: 0, error })?;
+    match mesh.first_not_finite() {
+        Some(triangle) => Err(BooleanError::NotFinite { operand: 0, triangle }),
+        None => Ok(()),
+    }
+}
+
+/// The union of the solid and of the sheets made thick.
+fn thickened(
+    outcome: Option<Outcome>,
+    sheets: &TriMesh,
+    thickness: Option<f64>,
+    options: &OuterOptions,
+    operands: &[Operand<'_>],
+    progress: &Progress,
+) -> Result<Outcome, OuterError> {
+    let Some(min) = thickness else { return Err(BooleanError::from(super::NothingEnclosed::Nothing).into()) };
+    let bounds = sizing::bounds([operands[0].mesh]).map_err(|operand| BooleanError::Empty { operand })?;
+    let h = sizing::spacing(&bounds, options.solid.voxel).map_err(BooleanError::Lattice)?;
+    let surface = super::SurfaceOptions { voxel: VoxelSize::Length(h.min(min / ACROSS)), ..options.solid.surface() };
+    let asked = ThickenOptions { min, side: SheetSide::Both, surface };
+    let solid = outcome.as_ref().map(|outcome| &outcome.solid);
+    let changed = thicken(solid, sheets, &asked, progress)?;
+    Ok(match outcome {
+        None => changed.into(),
+        Some(outcome) => {
+            let holes = outcome.report.holes.clone();
+            let followed = outcome.followed_by(changed, operands.iter().copied(), progress);
+            let mut followed = followed.map_err(BooleanError::from)?;
+            followed.report.holes = holes;
+            followed.report.topology = None;
+            followed
+        }
+    })
+}
+
+/// What the ball has found.
+struct Found {
+    /// The outer triangles, which face outwards.
+    outer: TriMesh,
+    /// For each triangle that was judged the operand's that it is, or is a piece of.
+    source: Vec<u32>,
+    /// For each outer triangle the number among those that were judged.
+    number: Vec<u32>,
+    sheets: TriMesh,
+    orient: crate::orient::OrientReport,
+    report: OuterReport,
+}
+
+impl Found {
+    /// Cuts the triangles of an operand where they cross, and rolls the ball around them.
+    fn new(given: &TriMesh, options: &OuterOptions, progress: &Progress) -> Result<Self, OuterError> {
+        progress.stage(Stage::Orient)?;
+        let mut soup = Soup::of(&[given], OrientMode::Auto, progress)?;
+        let mut orient = soup.reports[0].clone();
+        progress.stage(Stage::Arrange)?;
+        let single = options.solid.precision == Precision::Single;
+        let pieces = cut(&soup.mesh, single, progress).map_err(|error| match error {
+            ArrangeError::Stopped(stopped) => stopped.into(),
+            error => OuterError::Cut(error),
+        })?;
+        if pieces.cut > 0 {
+            let whole = std::mem::replace(&mut soup, Soup::of(&[&pieces.mesh], OrientMode::Auto, progress)?);
+            soup.source.iter_mut().for_each(|t| *t = whole.source[pieces.sources[*t as usize] as usize]);
+        }
+        progress.stage(Stage::Distance)?;
+        let reach = Reach::of(&soup.mesh, options.ball, options.solid.max_memory, progress)?;
+        let sights = sights(&soup.mesh, &reach, progress)?;
+        let parts = judge(&soup.mesh, &soup.patch_of, soup.patch_count, &sights);
+        let turned = |t: usize| parts.turned[soup.patch_of[t].index()];
+        let of = |part: Part| -> Vec<u32> {
+            (0..soup.mesh.triangles.len() as u32).filter(|&t| parts.of[t as usize] == part).collect()
+        };
+        let number = of(Part::Outer);
+        let facing = |&t: &u32| {
+            let [a, b, c] = soup.mesh.triangles[t as usize];
+            if turned(t as usize) { [a, c, b] } else { [a, b, c] }
+        };
+        let positions = soup.mesh.positions.clone();
+        let outer = TriMesh { positions, triangles: number.iter().map(facing).collect() }.welded();
+        let seen = of(Part::Sheet);
+        let sheets = soup.mesh.submesh(&seen).mesh;
+        let report = report(&soup, &parts, &sheets, (options.ball, pieces.cut), reach.lattice.h);
+        let used = |patch: usize| number.iter().any(|&t| soup.patch_of[t as usize].index() == patch);
+        orient.flipped_patches = (0..soup.patch_count).filter(|&patch| parts.turned[patch] && used(patch)).count();
+        orient.flipped_by_rays = number.iter().filter(|&&t| turned(t as usize)).count();
+        if options.thickness.is_none() && let Some(&first) = seen.first() {
+            let widest = rims(&sheets).iter().map(|rim| rim.diameter).fold(0.0, f64::max);
+            let at = given.corners(soup.source[first as usize] as usize).iter().sum::<DVec3>() / 3.0;
+            return Err(OuterError::Sheets { triangles: seen.len(), at, widest });
+        }
+        Ok(Self { outer, source: soup.source, number, sheets, orient, report })
+    }
+
+    /// The outer triangles with a lid over each rim that has one.
+    fn closed(&self, options: &Options) -> (Assembled, Vec<FilledHole>) {
+        let known = self.outer.positions.len();
+        let mut assembled =
+            Assembled { mesh: self.outer.clone(), own: self.number.iter().map(|&t| Some(self.source[t as usize])).collect() };
+        let mut holes = Vec::new();
+        let around = Surroundings::new(&self.outer);
+        let asked = FillOptions { style: options.fill, ..FillOptions::default() };
+        for rim in rims(&self.outer) {
+            // A rim without a lid is left to the repair.
+            let Ok(lid) = lid(&around, &rim, &asked) else { continue };
+            let new = (assembled.mesh.positions.len() - known) as u32;
+            let number = |v: u32| if (v as usize) < known { v } else { v + new };
+            assembled.mesh.triangles.extend(lid.triangles.iter().map(|corners| corners.map(number)));
+            assembled.mesh.positions.extend_from_slice(&lid.positions);
+            holes.push(FilledHole::of(&rim, &lid));
+        }
+        assembled.own.resize(assembled.mesh.triangles.len(), None);
+        (assembled, holes)
+    }
+}
+
+fn report(soup: &Soup, parts: &Parts, sheets: &TriMesh, (ball, cut): (f64, usize), voxel: f64) -> OuterReport {
+    let count = |part: Part| parts.of.iter().filter(|&&own| own == part).count();
+    let mut stays = vec![false; soup.patch_count];
+    for (part, patch) in parts.of.iter().zip(&soup.patch_of) {
+        stays[patch.index()] |= *part != Part::Inner;
+    }
+    OuterReport {
+        ball,
+        voxel,
+        cut,
+        outer_triangles: count(Part::Outer),
+        inner_triangles: count(Part::Inner),
+        inner_patches: stays.iter().filter(|stays| !**stays).count(),
+        sheet_triangles: count(Part::Sheet),
+        sheet_area: super::plan::area(sheets),
+        thickness: None,
+    }
+}
