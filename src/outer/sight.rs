@@ -78,12 +78,9 @@ impl Scene<'_> {
         let radius = self.reach.radius;
         let lattice = &self.reach.lattice;
         let low = lattice.to_lattice(p + way * radius).floor().as_ivec3();
-        let near = (0..8).filter_map(|n| self.reach.at(low + IVec3::new(n & 1, n >> 1 & 1, n >> 2)));
-        let Some(is_outside) = near.reduce(|a, b| a | b) else { return Sight::Nowhere };
-        if !self.has_room(p, way) {
-            return Sight::Nowhere;
-        }
-        if is_outside { Sight::Outside } else { Sight::Chamber }
+        let near = (0..8).map(|n| self.reach.at(low + IVec3::new(n & 1, n >> 1 & 1, n >> 2)));
+        let most = near.fold(Sight::Nowhere, Sight::max);
+        if most > Sight::Nowhere && self.has_room(p, way) { most } else { Sight::Nowhere }
     }
 
     /// Whether the ball touches nothing else, and nothing lies between its centre and where it touches.

@@ -13,6 +13,17 @@ pub(super) struct Assembled {
 }
 
 impl Assembled {
+    /// For each triangle whether a result has any that lies on it. `sources`: those of a pipeline whose first operand was this mesh.
+    pub(super) fn left(&self, sources: &[TriangleSource]) -> Vec<bool> {
+        let mut left = vec![false; self.mesh.triangles.len()];
+        for source in sources {
+            if let TriangleSource::Operand { operand: 0, triangle } = *source {
+                left[triangle as usize] = true;
+            }
+        }
+        left
+    }
+
     /// The outcome of a pipeline whose first operand was this mesh, as one of the operands it was made for: sources, colours and textures are theirs.
     pub(super) fn told(&self, outcome: Outcome, operands: &[Operand<'_>]) -> Outcome {
         let Outcome { solid, mut sources, lattice, mut report, .. } = outcome;

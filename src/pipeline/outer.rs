@@ -1,11 +1,15 @@
 //! The surface as a ball sees it from outside: inner skins, buried faces and parts go, and pinholes are closed.
 
+use std::ops::Range;
+
 use glam::DVec3;
+use rustc_hash::FxHashSet;
 
 use super::assembled::Assembled;
 use super::frame::Frame;
+use super::plan::area;
 use super::{
-    BooleanError, FilledHole, Operand, Options, OuterReport, Outcome, Plan, Precision, SheetSide, ThickenError,
+    BooleanError, FilledHole, NothingEnclosed, Operand, Options, OuterReport, Outcome, Plan, Precision, SheetSide, SurfaceOptions, ThickenError,
     ThickenOptions, VoxelSize, boolean, plan, sizing, thicken,
 };
 use crate::arrange::{ArrangeError, cut};
@@ -13,7 +17,7 @@ use crate::digits;
 use crate::fill::{FillOptions, Surroundings, lid, rims};
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
-use crate::orient::OrientMode;
+use crate::orient::{OrientMode, OrientReport, PatchId};
 use crate::outer::{Part, Parts, Reach, ReachError, judge, sights};
 use crate::progress::{Progress, Stage, Stopped};
 use crate::survey::{Soup, SoupError};
@@ -97,13 +101,12 @@ pub fn outer<'a>(
     check(given)?;
     let frame = Frame::of(&[given], &solid.surface());
     let mut found = Found::new(&frame.local(given), options, progress)?;
-    found.report.thickness = options.thickness.filter(|_| found.report.sheet_triangles > 0);
-    let (mut assembled, mut holes) = found.closed(solid);
+    let (mut assembled, lids) = found.closed(solid);
     frame.mesh(&mut assembled.mesh);
     frame.mesh(&mut found.sheets);
-    holes.iter_mut().for_each(|hole| frame.place(&mut hole.centre));
     let negative = operand.negative.map(Operand::from);
     let operands: Vec<Operand<'_>> = [Operand { negative: None, ..operand }].into_iter().chain(negative).collect();
+    let mut left = Vec::new();
     let outcome = match assembled.mesh.triangles.is_empty() {
         true => None,
         false => {
@@ -112,16 +115,24 @@ pub fn outer<'a>(
             let mut made = boolean([whole], &Expression::Operand(0), &keep, progress)?;
             // What the ball saw is another thing than what the operand describes.
             made.report.topology = None;
-            made.report.holes.splice(0..0, holes);
+            left = assembled.left(&made.sources);
+            // Lids of skins that lie within others are not there.
+            let there = lids.into_iter().filter(|lid| left[lid.triangles.clone()].contains(&true));
+            let placed = there.map(|mut lid| {
+                frame.place(&mut lid.hole.centre);
+                lid.hole
+            });
+            made.report.holes.splice(0..0, placed);
             Some(assembled.told(made, &operands))
         }
     };
-    let mut outcome = match (outcome, options.thickness.filter(|_| !found.sheets.triangles.is_empty())) {
-        (Some(outcome), None) => outcome,
-        (outcome, thickness) => thickened(outcome, &found.sheets, thickness, options, &operands, progress)?,
+    let report = found.report(&left, options);
+    let mut outcome = match (outcome, found.sheets.triangles.is_empty()) {
+        (Some(outcome), true) => outcome,
+        (outcome, _) => thickened(outcome, &found.sheets, options, &operands, progress)?,
     };
     outcome.report.orient = vec![found.orient];
-    outcome.report.outer = Some(found.report);
+    outcome.report.outer = Some(report);
     Ok(outcome)
 }
 
@@ -156,15 +167,14 @@ fn check(mesh: &TriMesh) -> Result<(), BooleanError> {
 fn thickened(
     outcome: Option<Outcome>,
     sheets: &TriMesh,
-    thickness: Option<f64>,
     options: &OuterOptions,
     operands: &[Operand<'_>],
     progress: &Progress,
 ) -> Result<Outcome, OuterError> {
-    let Some(min) = thickness else { return Err(BooleanError::from(super::NothingEnclosed::Nothing).into()) };
+    let Some(min) = options.thickness else { return Err(BooleanError::from(NothingEnclosed::Nothing).into()) };
     let bounds = sizing::bounds([operands[0].mesh]).map_err(|operand| BooleanError::Empty { operand })?;
     let h = sizing::spacing(&bounds, options.solid.voxel).map_err(BooleanError::Lattice)?;
-    let surface = super::SurfaceOptions { voxel: VoxelSize::Length(h.min(min / ACROSS)), ..options.solid.surface() };
+    let surface = SurfaceOptions { voxel: VoxelSize::Length(h.min(min / ACROSS)), ..options.solid.surface() };
     let asked = ThickenOptions { min, side: SheetSide::Both, surface };
     let solid = outcome.as_ref().map(|outcome| &outcome.solid);
     let changed = thicken(solid, sheets, &asked, progress)?;
@@ -185,13 +195,24 @@ fn thickened(
 struct Found {
     /// The outer triangles, which face outwards.
     outer: TriMesh,
-    /// For each triangle that was judged the operand's that it is, or is a piece of.
-    source: Vec<u32>,
-    /// For each outer triangle the number among those that were judged.
+    /// For each of them its number among those that were judged.
     number: Vec<u32>,
+    /// The triangles that were judged, their patches, and for each the operand's that it is, or is a piece of.
+    soup: Soup,
+    /// What they are.
+    parts: Parts,
     sheets: TriMesh,
-    orient: crate::orient::OrientReport,
-    report: OuterReport,
+    orient: OrientReport,
+    /// Triangles that were cut.
+    cut: usize,
+    /// The voxel of the lattice, model units.
+    voxel: f64,
+}
+
+/// A lid, and its triangles in the mesh that was put together.
+struct Closing {
+    hole: FilledHole,
+    triangles: Range<usize>,
 }
 
 impl Found {
@@ -227,24 +248,25 @@ impl Found {
         let outer = TriMesh { positions, triangles: number.iter().map(facing).collect() }.welded();
         let seen = of(Part::Sheet);
         let sheets = soup.mesh.submesh(&seen).mesh;
-        let report = report(&soup, &parts, &sheets, (options.ball, pieces.cut), reach.lattice.h);
-        let used = |patch: usize| number.iter().any(|&t| soup.patch_of[t as usize].index() == patch);
-        orient.flipped_patches = (0..soup.patch_count).filter(|&patch| parts.turned[patch] && used(patch)).count();
+        let turned_over: FxHashSet<PatchId> =
+            number.iter().filter(|&&t| turned(t as usize)).map(|&t| soup.patch_of[t as usize]).collect();
+        orient.flipped_patches = turned_over.len();
         orient.flipped_by_rays = number.iter().filter(|&&t| turned(t as usize)).count();
         if options.thickness.is_none() && let Some(&first) = seen.first() {
             let widest = rims(&sheets).iter().map(|rim| rim.diameter).fold(0.0, f64::max);
             let at = given.corners(soup.source[first as usize] as usize).iter().sum::<DVec3>() / 3.0;
             return Err(OuterError::Sheets { triangles: seen.len(), at, widest });
         }
-        Ok(Self { outer, source: soup.source, number, sheets, orient, report })
+        let voxel = reach.lattice.h;
+        Ok(Self { outer, number, soup, parts, sheets, orient, cut: pieces.cut, voxel })
     }
 
     /// The outer triangles with a lid over each rim that has one.
-    fn closed(&self, options: &Options) -> (Assembled, Vec<FilledHole>) {
+    fn closed(&self, options: &Options) -> (Assembled, Vec<Closing>) {
         let known = self.outer.positions.len();
         let mut assembled =
-            Assembled { mesh: self.outer.clone(), own: self.number.iter().map(|&t| Some(self.source[t as usize])).collect() };
-        let mut holes = Vec::new();
+            Assembled { mesh: self.outer.clone(), own: self.number.iter().map(|&t| Some(self.soup.source[t as usize])).collect() };
+        let mut lids = Vec::new();
         let around = Surroundings::new(&self.outer);
         let asked = FillOptions { style: options.fill, ..FillOptions::default() };
         for rim in rims(&self.outer) {
@@ -252,30 +274,32 @@ impl Found {
             let Ok(lid) = lid(&around, &rim, &asked) else { continue };
             let new = (assembled.mesh.positions.len() - known) as u32;
             let number = |v: u32| if (v as usize) < known { v } else { v + new };
+            let first = assembled.mesh.triangles.len();
             assembled.mesh.triangles.extend(lid.triangles.iter().map(|corners| corners.map(number)));
             assembled.mesh.positions.extend_from_slice(&lid.positions);
-            holes.push(FilledHole::of(&rim, &lid));
+            lids.push(Closing { hole: FilledHole::of(&rim, &lid), triangles: first..assembled.mesh.triangles.len() });
         }
         assembled.own.resize(assembled.mesh.triangles.len(), None);
-        (assembled, holes)
+        (assembled, lids)
     }
-}
 
-fn report(soup: &Soup, parts: &Parts, sheets: &TriMesh, (ball, cut): (f64, usize), voxel: f64) -> OuterReport {
-    let count = |part: Part| parts.of.iter().filter(|&&own| own == part).count();
-    let mut stays = vec![false; soup.patch_count];
-    for (part, patch) in parts.of.iter().zip(&soup.patch_of) {
-        stays[patch.index()] |= *part != Part::Inner;
-    }
-    OuterReport {
-        ball,
-        voxel,
-        cut,
-        outer_triangles: count(Part::Outer),
-        inner_triangles: count(Part::Inner),
-        inner_patches: stays.iter().filter(|stays| !**stays).count(),
-        sheet_triangles: count(Part::Sheet),
-        sheet_area: super::plan::area(sheets),
-        thickness: None,
+    /// What became of all triangles. `left`: for each triangle of the mesh that was put together whether it is there.
+    fn report(&self, left: &[bool], options: &OuterOptions) -> OuterReport {
+        let mut stays = vec![false; self.soup.patch_count];
+        let outer = self.number.iter().zip(left).filter(|entry| *entry.1).map(|entry| *entry.0);
+        let sheets = (0..self.soup.patch_of.len() as u32).filter(|&t| self.parts.of[t as usize] == Part::Sheet);
+        let (outer_triangles, sheet_triangles) = (outer.clone().count(), sheets.clone().count());
+        outer.chain(sheets).for_each(|t| stays[self.soup.patch_of[t as usize].index()] = true);
+        OuterReport {
+            ball: options.ball,
+            voxel: self.voxel,
+            cut: self.cut,
+            outer_triangles,
+            inner_triangles: self.parts.of.len() - outer_triangles - sheet_triangles,
+            inner_patches: stays.iter().filter(|stays| !**stays).count(),
+            sheet_triangles,
+            sheet_area: area(&self.sheets),
+            thickness: options.thickness.filter(|_| sheet_triangles > 0),
+        }
     }
 }
