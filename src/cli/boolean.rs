@@ -29,5 +29,9 @@ pub fn run(
 ) -> Result<Exit, Failure> {
     let paths: Vec<_> = args.inputs.iter().map(AsRef::as_ref).collect();
     let expression = expression(paths.len());
-    solid::run(&Job { paths, names: Vec::new(), change: None, expression, args: &args.solid }, session, report)
+    solid::run(
+        &Job { paths, names: Vec::new(), change: None, leave: None, expression, args: &args.solid },
+        session,
+        report,
+    )
 }

@@ -78,12 +78,15 @@ pub enum FillChoice {
     Flat,
     /// With the curvature of what is around
     Smooth,
+    /// Not at all: the result has holes, and the exit status is 3 (`repair` alone)
+    None,
 }
 
 impl From<FillChoice> for Style {
     fn from(choice: FillChoice) -> Self {
         match choice {
-            FillChoice::Auto => Self::Auto,
+            // What is left open is closed first, so that all else is as it would be.
+            FillChoice::Auto | FillChoice::None => Self::Auto,
             FillChoice::Flat => Self::Flat,
             FillChoice::Smooth => Self::Smooth,
         }

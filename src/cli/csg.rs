@@ -43,6 +43,7 @@ pub fn run(args: &CsgArgs, session: &Session, report: &mut RunReport) -> Result<
     let expression = language::parse_boolean(&args.expression, &names).map_err(|e| explain(&args.expression, &e))?;
     let job = Job {
         change: None,
+        leave: None,
         paths: operands.iter().map(|(_, path)| *path).collect(),
         names: names.iter().map(|name| name.to_string()).collect(),
         expression,

@@ -19,7 +19,8 @@ pub fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
     add(sum(|o| o.flipped_in_patches), "triangle", "turned over to agree with the neighbours");
     add(sum(|o| o.flipped_patches), "patch", "turned over as a whole");
     let lids = pipeline.holes.iter().map(|hole| hole.triangles).sum();
-    add(pipeline.holes.len(), "hole", &format!("closed with {}", words::plural(lids, "triangle")));
+    let lidded = pipeline.holes.iter().filter(|hole| hole.has_lid()).count();
+    add(lidded, "hole", &format!("closed with {}", words::plural(lids, "triangle")));
     add(pipeline.cut, "triangle", "cut along others first, so that what they cross in stays exact");
     if let Some(outer) = &pipeline.outer {
         let widest = pipeline.holes.iter().map(|hole| hole.diameter).reduce(f64::max);

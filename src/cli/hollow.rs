@@ -39,6 +39,7 @@ pub fn run(args: &HollowArgs, session: &Session, report: &mut RunReport) -> Resu
         names: Vec::new(),
         expression: Expression::Operand(0),
         change: Some(&change),
+        leave: None,
         args: &args.solid,
     };
     solid::run(&job, session, report)

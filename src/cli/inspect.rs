@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::choices::Defect;
+use super::choices::{Defect, FillChoice};
 use super::entries::CrossingEntry;
 use super::exit::{Asked, Exit, Failure};
 use super::given::Given;
@@ -11,11 +11,11 @@ use super::inspect_args::InspectArgs;
 use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
-use super::{grids, summary, table, words};
+use super::{grids, holes, summary, table, words};
 use crate::arrange::{ArrangeError, crossing_curves};
 use crate::io::Unit;
 use crate::mesh::{Bounds, MassProperties, Overhang, TriMesh, ValidateOptions, Validity, validate};
-use crate::pipeline::{self, LengthsReport, Options, ThicknessReport};
+use crate::pipeline::{self, HoleClosing, HoleReport, LengthsReport, Options, ThicknessReport, VoxelSize};
 use crate::progress::Stage;
 
 /// Looks at one file and prints a table.
@@ -41,6 +41,10 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
         true => Some(report.timed(Stage::Thickness, |_| thickness(args, input, unit, session))?),
         false => None,
     };
+    let holes = match args.holes {
+        true => Some(report.timed(Stage::Fill, |_| holes_of(args, input, unit, session))?),
+        false => None,
+    };
     session.clear_bar();
     if !args.common.json {
         let mut rows = summary::inspection(input, &validity, unit);
@@ -51,9 +55,13 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
         rows.extend(mass.iter().flat_map(|mass| mass_rows(mass, name.as_deref())));
         rows.extend(overhang.iter().map(|found| overhang_row(found, &validity, name.as_deref())));
         rows.extend(thickness.iter().flat_map(|thickness| thickness_rows(thickness, name.as_deref())));
+        rows.extend(holes.iter().flat_map(|list| match list.is_empty() {
+            true => vec![("hole", "none".to_string())],
+            false => holes::rows(list, name.as_deref()),
+        }));
         super::streams::write_stream(table::table(&rows).as_bytes())?;
     }
-    report.result = Some(RunResult::Inspection { mass, overhang, crossings, thickness });
+    report.result = Some(RunResult::Inspection { mass, overhang, crossings, thickness, holes });
     let found: Vec<String> = failing(&args.fail_on, &validity);
     if found.is_empty() {
         return Ok(Exit::Done);
@@ -135,6 +143,26 @@ fn thickness(
     let asked = Asked { voxel: args.voxels.voxel.is_some(), memory: None };
     let failed = |e| Failure::pipeline(&e, std::slice::from_ref(&input.label), name.as_deref(), asked);
     pipeline::thickness(mesh, &Options::new(voxel), &session.progress).map_err(failed)
+}
+
+/// The holes, and what would be done over each.
+fn holes_of(
+    args: &InspectArgs,
+    input: &Input,
+    unit: Option<Unit>,
+    session: &Session,
+) -> Result<Vec<HoleReport>, Failure> {
+    session.progress.stage(Stage::Fill)?;
+    // No voxel is made; the size is needed by none of it.
+    let options = Options { fill: args.fill.into(), ..Options::new(VoxelSize::Along(2)) };
+    let name = unit.map(|unit| unit.to_string());
+    let asked = Asked { voxel: false, memory: None };
+    let failed = |e| Failure::pipeline(&e, std::slice::from_ref(&input.label), name.as_deref(), asked);
+    let mut holes = pipeline::holes(&input.loaded.mesh, &options, &session.progress).map_err(failed)?;
+    if args.fill == FillChoice::None {
+        holes.iter_mut().for_each(|hole| hole.closed_by = HoleClosing::LeftOpen);
+    }
+    Ok(holes)
 }
 
 fn thickness_rows(found: &ThicknessReport, unit: words::UnitName<'_>) -> Vec<table::Row> {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::choices::Defect;
+use super::choices::{Defect, FillChoice};
 use super::shared_args::{CommonArgs, InputArgs, VoxelArgs};
 
 /// The help of --resolution, where voxels are for one measurement only.
@@ -24,6 +24,12 @@ pub struct InspectArgs {
     /// Also measure the thickness of walls and gaps along the rays of a lattice
     #[arg(long)]
     pub thickness: bool,
+    /// Also list the holes, with what `repair` would do over each
+    #[arg(long)]
+    pub holes: bool,
+    /// How the holes would be closed
+    #[arg(long, value_enum, default_value_t = FillChoice::Auto, requires = "holes")]
+    pub fill: FillChoice,
     /// The size of the voxels of --thickness.
     #[command(flatten)]
     pub voxels: VoxelArgs,

@@ -6,7 +6,8 @@ use super::exit::Failure;
 use super::session::Session;
 use super::{output, side};
 use crate::io::{self, FaceMap, LegendEntry};
-use crate::pipeline::{Operand, Outcome, TriangleKind};
+use crate::mesh::TriMesh;
+use crate::pipeline::{Opened, TriangleKind};
 
 /// The colours of the kinds, by their numbers: blue-grey, orange, magenta, blue. Eyes that lack a kind of cones tell them apart, too (see the tests).
 const KINDS: [[u8; 3]; 4] = [[176, 190, 205], [230, 150, 20], [165, 15, 105], [45, 15, 180]];
@@ -26,15 +27,27 @@ fn meaning(kind: TriangleKind) -> String {
     format!("{}: {what}", kind.word())
 }
 
-/// Writes the result coloured by what its triangles are, and by the canals that they bound. `operands`: the meshes that it was made of.
-pub fn write(
-    path: &Path,
-    outcome: &Outcome,
-    operands: &[Operand<'_>],
-    canal_of: &[u32],
-    session: &Session,
-) -> Result<(), Failure> {
-    let kinds = outcome.kinds(operands.iter().copied());
+/// What is drawn.
+pub struct Map<'a> {
+    pub mesh: &'a TriMesh,
+    /// What each triangle is.
+    pub kinds: Vec<TriangleKind>,
+    /// The canal that each triangle bounds, from 1; 0, or nothing at all, where it bounds none.
+    pub canal_of: &'a [u32],
+}
+
+impl<'a> Map<'a> {
+    /// The same with holes open again, of a result without canals.
+    pub fn opened(self, opened: Option<&'a Opened>) -> Self {
+        let Some(Opened { mesh, triangles }) = opened else { return self };
+        let kinds = triangles.iter().map(|&t| self.kinds[t as usize]).collect();
+        Self { mesh, kinds, ..self }
+    }
+}
+
+/// Writes the result coloured by what its triangles are, and by the canals that they bound.
+pub fn write(path: &Path, map: &Map<'_>, session: &Session) -> Result<(), Failure> {
+    let Map { mesh, kinds, canal_of } = map;
     session.progress.check()?;
     let numbers: Vec<u32> = kinds.iter().map(|&kind| kind as u32).collect();
     let canal = |t: usize| canal_of.get(t).copied().filter(|&canal| canal > 0);
@@ -53,7 +66,7 @@ pub fn write(
     let comments = [format!("kind of a face: {}", words.join(", "))];
     let map = FaceMap { colours: &colours, numbers: &properties, legend: &legend(most), comments: &comments };
     let mut bytes = Vec::new();
-    io::encode_face_map(&outcome.solid, &map, &mut bytes).map_err(|error| output::unencoded(path, &error))?;
+    io::encode_face_map(mesh, &map, &mut bytes).map_err(|error| output::unencoded(path, &error))?;
     side::write_side(path, &bytes, session)
 }
 

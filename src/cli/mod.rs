@@ -28,6 +28,7 @@ mod field_places;
 mod files;
 mod given;
 mod grids;
+mod holes;
 mod hollow;
 mod input;
 mod inspect;

@@ -131,7 +131,13 @@ fn changed(
     session: &Session,
     report: &mut RunReport,
 ) -> Result<Exit, Failure> {
-    let job =
-        Job { paths: vec![input], names: Vec::new(), expression: Expression::Operand(0), change: Some(change), args };
+    let job = Job {
+        paths: vec![input],
+        names: Vec::new(),
+        expression: Expression::Operand(0),
+        change: Some(change),
+        leave: None,
+        args,
+    };
     solid::run(&job, session, report)
 }

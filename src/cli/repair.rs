@@ -2,6 +2,7 @@
 
 use super::change::Change;
 use super::exit::{Exit, Failure};
+use super::holes::LeaveArgs;
 use super::length::Length;
 use super::maker::Maker;
 use super::report::RunReport;
@@ -19,11 +20,14 @@ pub struct RepairArgs {
     #[arg(value_name = "IN")]
     pub input: PathBuf,
     /// Keep the surface as a ball of this diameter sees it from outside: what is narrower is no way in, and what the ball does not come to goes [default of LEN: 1%]
-    #[arg(long, value_name = "LEN", num_args = 0..=1, default_missing_value = "1%", allow_hyphen_values = true)]
+    #[arg(long, value_name = "LEN", num_args = 0..=1, default_missing_value = "1%", conflicts_with = "holes")]
     pub outer: Option<Length>,
     /// How thick sheets become that the ball of --outer sees from both sides
     #[arg(long, value_name = "LEN", allow_hyphen_values = true, requires = "outer")]
     pub thickness: Option<Length>,
+    /// Which holes are left open.
+    #[command(flatten)]
+    pub leave: LeaveArgs,
     /// Flags of the pipeline and its output.
     #[command(flatten)]
     pub solid: SolidArgs,
@@ -38,6 +42,7 @@ pub fn run(args: &RepairArgs, session: &Session, report: &mut RunReport) -> Resu
         names: Vec::new(),
         expression: Expression::Operand(0),
         change: outer.as_ref(),
+        leave: Some(&args.leave),
         args: &args.solid,
     };
     solid::run(&job, session, report)

@@ -7,7 +7,7 @@ use crate::compare::Comparison;
 use crate::decimate::DecimateReport;
 use crate::fit::FitReport;
 use crate::mesh::{MassProperties, Overhang};
-use crate::pipeline::{DistancePlan, DistanceReport, Dropped, FieldReport, Plan, Report, ThicknessReport};
+use crate::pipeline::{DistancePlan, DistanceReport, Dropped, FieldReport, HoleReport, Plan, Report, ThicknessReport};
 
 /// What a run found and made. Of a run that failed there is what it had found until then, and nothing that it wrote.
 #[derive(Debug, Serialize, schemars::JsonSchema)]
@@ -58,6 +58,9 @@ pub enum RunResult {
         /// What `--thickness` measured.
         #[serde(skip_serializing_if = "Option::is_none")]
         thickness: Option<ThicknessReport>,
+        /// The holes that `--holes` asked for, the longest rim first, and what would be done over each.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        holes: Option<Vec<HoleReport>>,
     },
     /// Of `inspect` with values over a lattice.
     Lattice {

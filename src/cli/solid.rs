@@ -9,8 +9,10 @@ use super::change::{self, Change, Changed, Site};
 use super::entries::OutputEntry;
 use super::epilogue;
 use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
+use super::holes::{self, LeaveArgs};
 use super::input::{self, Input};
 use super::length::{Scale, Simplify};
+use super::map::{self, Map};
 use super::output::write_verified;
 use super::paint::{self, Arranged};
 use super::report::RunReport;
@@ -18,12 +20,12 @@ use super::result::RunResult;
 use super::session::Session;
 use super::solid_args::SolidArgs;
 use super::target::Target;
-use super::{backend, doubts, keep, limits, machine, map, negative, summary, table, weights, words};
+use super::{backend, doubts, keep, limits, machine, negative, summary, table, weights, words};
 use crate::fit::{FitOptions, rounded};
 use crate::io::{Colours, Format, Loaded, Paint, Unit};
 use crate::ldi::Expression;
 use crate::mesh::{Bounds, Solid, TriMesh, Validity, validate};
-use crate::pipeline::{self, Advice, Operand, Options, Precision, VoxelSize, Work};
+use crate::pipeline::{self, Advice, Opened, Operand, Options, Outcome, Precision, VoxelSize, Work};
 use crate::progress::Stage;
 
 /// Meshes and what is to be made of them.
@@ -36,6 +38,8 @@ pub struct Job<'a> {
     pub expression: Expression,
     /// What is done to that solid.
     pub change: Option<&'a Change>,
+    /// Which holes are left open, where that can be asked for.
+    pub leave: Option<&'a LeaveArgs>,
     /// The flags.
     pub args: &'a SolidArgs,
 }
@@ -44,6 +48,7 @@ pub struct Job<'a> {
 pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
     let args = job.args;
     args.check()?;
+    holes::check(args, job.leave)?;
     if args.output.is_none() && !args.plan && job.change.is_none_or(Change::makes_a_mesh) {
         return Err(Failure::usage("where to write the result is not said: --output OUT")
             .hint("--plan says what it would cost, without an output"));
@@ -126,7 +131,7 @@ fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_js
         "unit": unit.map(|unit| unit.to_string()),
         "orient": format!("{:?}", options.orient).to_lowercase(),
         "inside": options.inside,
-        "fill": options.fill,
+        "fill": format!("{:?}", args.fill).to_lowercase(),
         "vote": options.vote,
         "backend": options.backend,
         "collapse": options.collapse,
@@ -234,6 +239,7 @@ fn make(
             canal_of = left.into_iter().map(|t| canal_of[t]).collect();
         }
     }
+    let opened = holes::opened(args, job.leave, &mut outcome, scale)?;
     report.stages.append(&mut outcome.report.stages);
     report.warnings.extend(outcome.report.warnings.iter().map(ToString::to_string));
     report.result = Some(RunResult::solid(outcome.report.clone()));
@@ -241,15 +247,24 @@ fn make(
     let writes = target.is_some() || args.map.is_some();
     let withheld = writes && !lost.is_empty() && !args.keeps_partial();
     if let Some(path) = args.map.as_ref().filter(|_| !withheld) {
-        report.timed(Stage::Map, |_| map::write(path, &outcome, &operands, &canal_of, session))?;
+        let kinds = outcome.kinds(operands.iter().copied());
+        let map = Map { mesh: &outcome.solid, kinds, canal_of: &canal_of };
+        report.timed(Stage::Map, |_| map::write(path, &map.opened(opened.as_ref()), session))?;
     }
     if let Some(target) = target.filter(|_| !withheld) {
-        let paint = Paint { colours: outcome.colours.as_ref(), texture: outcome.texture.as_ref(), beside: None };
-        let written = write(&outcome.solid, paint, target, session, report)?;
+        let written = match &opened {
+            None => {
+                let paint =
+                    Paint { colours: outcome.colours.as_ref(), texture: outcome.texture.as_ref(), beside: None };
+                write(&outcome.solid, paint, target, session, report)?
+            }
+            Some(opened) => write_open(opened, &outcome, &operands, target, session, report)?,
+        };
         report.written(written);
     }
     let guessed = limits::guessed(report);
     report.warnings.extend(guessed.iter().cloned());
+    report.warnings.extend(opened.as_ref().map(|_| holes::left_open(&outcome.report.holes)));
     let exit = epilogue::measured(session, report, args.max_memory);
     report.warnings.extend(lost.iter().filter(|_| !withheld).cloned());
     let name = unit.map(|unit| unit.to_string());
@@ -259,7 +274,8 @@ fn make(
         session.speak();
         return Err(keep::withheld(&lost, args.output.as_deref(), &doubts::better(report, name.as_deref())));
     }
-    Ok(if guessed.is_none() && lost.is_empty() { exit } else { Exit::Limit })
+    let is_whole = guessed.is_none() && lost.is_empty() && opened.is_none();
+    Ok(if is_whole { exit } else { Exit::Limit })
 }
 
 /// The solid that is asked for.
@@ -288,9 +304,40 @@ pub(super) fn write<'a>(
     session: &Session,
     report: &mut RunReport,
 ) -> Result<OutputEntry, Failure> {
-    let paint = paint.into();
-    report.warnings.extend(paint::lost(solid, &paint, target));
-    let arranged = Arranged::new(solid, &paint, target.options.format);
+    write_judged((solid, paint.into()), target, session, report, |read, stored, moved| {
+        judge(read, solid, stored, moved, session)
+    })
+}
+
+/// Writes what is left of a result in which holes are open.
+fn write_open(
+    opened: &Opened,
+    outcome: &Outcome,
+    operands: &[Operand<'_>],
+    target: &Target,
+    session: &Session,
+    report: &mut RunReport,
+) -> Result<OutputEntry, Failure> {
+    let sources: Vec<_> = opened.triangles.iter().map(|&t| outcome.sources[t as usize]).collect();
+    let colours = pipeline::carry_colours(&opened.mesh, &sources, operands);
+    let texture = pipeline::carry_texture(&opened.mesh, &sources, operands);
+    let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
+    write_judged((&opened.mesh, paint), target, session, report, |read, (made, factor), _| {
+        check_same(&read.mesh, made, factor)?;
+        Ok(validate(&read.mesh, &read.validate_options(), &session.progress)?)
+    })
+}
+
+/// Writes a mesh, reads it, and has it judged: with the mesh as the format holds it, the factor between the two, and how far vertices moved for it.
+fn write_judged<'a>(
+    (mesh, paint): (&'a TriMesh, Paint<'a>),
+    target: &Target,
+    session: &Session,
+    report: &mut RunReport,
+    judge: impl FnOnce(&Loaded, (&TriMesh, f64), Option<f64>) -> Result<Validity, Failure>,
+) -> Result<OutputEntry, Failure> {
+    report.warnings.extend(paint::lost(mesh, &paint, target));
+    let arranged = Arranged::new(mesh, &paint, target.options.format);
     let (stored, moved) = stored(&arranged.mesh, target.options.format);
     if let Some(moved) = moved {
         report.warnings.push(rounding(moved, target.options.format));
@@ -300,9 +347,7 @@ pub(super) fn write<'a>(
     report.warnings.extend(of_unit);
     let factor = target.options.factor();
     let (entry, validity) = report.timed(Stage::WriteAndVerify, |_| {
-        write_verified(target, &stored, arranged.paint(), session, |read| {
-            judge(read, solid, (&stored, factor), moved, session)
-        })
+        write_verified(target, &stored, arranged.paint(), session, |read| judge(read, (&stored, factor), moved))
     })?;
     Ok(OutputEntry { validity: Some(validity), ..entry })
 }

@@ -7,7 +7,7 @@ use super::report::RunReport;
 use super::session::Session;
 use super::table::{Row, table};
 use super::words::{self, UnitName};
-use super::{done, doubts, dropped, exact};
+use super::{done, doubts, dropped, exact, holes};
 use crate::io::{Loaded, Unit};
 use crate::mesh::Validity;
 use crate::pipeline::{Plan, Report};
@@ -25,6 +25,7 @@ fn rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
     rows.extend(report.options["preset"].as_str().map(|text| ("preset", text.to_owned())));
     if let Some(pipeline) = report.pipeline() {
         rows.extend(done::done(pipeline, unit).into_iter().map(|text| ("done", text)));
+        rows.extend(holes::rows(&pipeline.holes, unit));
         rows.extend(exact::rows(pipeline));
         if pipeline.lattice {
             rows.push(("voxel", voxel(pipeline.voxel, pipeline.dims, unit)));
@@ -45,6 +46,11 @@ pub fn result_rows(report: &RunReport, unit: UnitName<'_>) -> Vec<Row> {
     // The file may be in another unit than the model is told of in.
     let metres = |name: Option<&str>| name.and_then(|name| name.parse().ok()).map(Unit::metres);
     let factor = metres(output.unit.as_deref()).zip(metres(unit)).map_or(1.0, |(file, model)| file / model);
+    if !validity.is_valid() {
+        let triangles = words::plural(validity.triangles, "triangle");
+        let open = words::plural(validity.open_edges, "open edge");
+        return vec![("result", format!("{}: {triangles}, {open}: no solid", output.path))];
+    }
     let volume = validity.volume * factor.powi(3);
     vec![
         ("result", format!("{}: {}, volume {}", output.path, solid(validity), words::volume(volume, unit))),

@@ -1,7 +1,7 @@
 //! Lids over holes, made from the rim alone.
 //!
 //! [`rims`] finds the loops of open edges of a mesh, and [`lid`] closes one: with the triangles of least weight over its vertices, which are then left as they are
-//! or refined to the density of the rim and shaped so that they continue the curvature of what is around. Nothing else is looked at: whether a lid meets other parts of the mesh, and whether it
+//! or refined to the density of the rim and shaped so that they continue the curvature of what is around; [`level_lid`] closes along the level of a number that is known in space. Nothing else is looked at: whether a lid meets other parts of the mesh, and whether it
 //! separates the inside from the outside, is for the caller to judge.
 //!
 //! # Which lid
@@ -21,6 +21,7 @@ mod boundary;
 mod creases;
 mod fair;
 mod flat;
+mod level;
 mod minimal;
 mod polygon;
 mod refine;
@@ -34,6 +35,7 @@ mod tests;
 use glam::DVec3;
 use serde::Serialize;
 
+pub use level::level_lid;
 pub(crate) use region::region;
 pub use rims::{Rim, rims};
 
@@ -195,7 +197,7 @@ fn smooth(boundary: &Boundary, rim: &Rim, around: &Surroundings<'_>, most: usize
             last = Ok(plain);
             continue;
         }
-        refine::refine(&mut sheet, most);
+        refine::refine(&mut sheet, most, 1.0);
         for steps in [fair::STEPS, 1, 0] {
             let mut shaped = sheet.clone();
             fair::fair(&mut shaped, around, rim, boundary.scale, steps);

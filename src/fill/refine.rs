@@ -12,8 +12,9 @@ const DENSITY: f64 = std::f64::consts::SQRT_2;
 /// Rounds of division; each makes triangles at least a third smaller.
 const ROUNDS: usize = 40;
 
-/// Divides triangles until the lid is as dense as its rim. At most `most` vertices are added: where the rim asks for more, the whole lid is coarser.
-pub(super) fn refine(sheet: &mut Sheet<'_>, most: usize) {
+/// Divides triangles until the lid is as dense as its rim, or, with `grows` above 1, so much sparser with every triangle on the way from it. At most `most` vertices
+/// are added: where the rim asks for more, the whole lid is coarser.
+pub(super) fn refine(sheet: &mut Sheet<'_>, most: usize, grows: f64) {
     sheet.turn_edges();
     let rim = sheet.below() as usize;
     let length = |k: usize| sheet.points[k].distance(sheet.points[(k + 1) % rim]);
@@ -47,7 +48,7 @@ pub(super) fn refine(sheet: &mut Sheet<'_>, most: usize) {
             // A division gives only the triangle beside it other corners in another order.
             let Some(corners) = sheet.triangle(t) else { continue };
             let places = sheet.corners(corners);
-            scale.push(mean_of(&scale, corners));
+            scale.push(grows * mean_of(&scale, corners));
             sheet.divide(t, (places[0] + places[1] + places[2]) / 3.0);
         }
         sheet.turn_edges();

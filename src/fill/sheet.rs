@@ -74,6 +74,19 @@ impl<'a> Sheet<'a> {
         spoke.map(|half| self.topology.flip(half));
     }
 
+    /// Divides every edge that joins two points of the rim across the lid: where such an edge runs, the lid could not be bent.
+    pub(super) fn divide_chords(&mut self) {
+        for half in 0..3 * self.triangle_ids() {
+            let (from, to) = (self.topology.origin(half), self.topology.target(half));
+            let (one, other) = (self.topology.apex(half), self.topology.apex(self.topology.twin(half)));
+            let below = self.below();
+            if from < below && to < below && one != below && other != below {
+                self.topology.split(half);
+                self.points.push((self.points[from as usize] + self.points[to as usize]) / 2.0);
+            }
+        }
+    }
+
     /// Turns edges until the lid is Delaunay, as far as its bends allow, or each has been turned a few times.
     pub(super) fn turn_edges(&mut self) {
         let halves = 0..3 * self.triangle_ids();

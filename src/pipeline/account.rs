@@ -46,7 +46,7 @@ impl Report {
         sources: &[TriangleSource],
     ) {
         self.thin.regions = thin_regions(&survey.spans, planes, surface, &survey.lattice);
-        self.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
+        self.closed_triangles = sources.iter().filter(|source| source.is_made_up()).count();
     }
 }
 

@@ -1,7 +1,7 @@
 //! What is known of a run before it is run: what has to be made, and which way that will go.
 
 use super::apart::Apart;
-use super::holes::closed;
+use super::holes::planned;
 use super::{BooleanError, Method, Options};
 use crate::ldi::Expression;
 use crate::mesh::edges::Edges;
@@ -47,7 +47,7 @@ impl Ahead {
             Method::Auto => match unbalanced(operands, &apart) {
                 open if open.is_empty() || apart.open_balances() => Way::Exact,
                 open if operands.len() > 1 => Way::Sealed(open),
-                _ if closed(&rest, options, &progress)?.is_some() => Way::Exact,
+                _ if planned(&rest, options, &progress)?.is_whole() => Way::Exact,
                 _ => Way::Voxel,
             },
         };

@@ -188,6 +188,7 @@ impl Apart {
             patch_count: soup.patch_count,
             reports,
             source: left.iter().map(|&t| soup.source[t]).collect(),
+            lids: Vec::new(),
         }
     }
 

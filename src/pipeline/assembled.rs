@@ -8,8 +8,10 @@ use crate::mesh::TriMesh;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Assembled {
     pub mesh: TriMesh,
-    /// For each of its triangles the operand's that it is, or is a piece of; `None`: it was made.
-    pub own: Vec<Option<u32>>,
+    /// Where each of its triangles comes from.
+    pub own: Vec<TriangleSource>,
+    /// How many holes the lids among them close, numbered from 1.
+    pub holes: usize,
 }
 
 impl Assembled {
@@ -24,17 +26,22 @@ impl Assembled {
         left
     }
 
-    /// The outcome of a pipeline whose first operand was this mesh, as one of the operands it was made for: sources, colours and textures are theirs.
+    /// The outcome of a pipeline whose first operand was this mesh, as one of the operands it was made for: sources, colours and textures are theirs, and the holes that the
+    /// pipeline closed come after those that were closed before.
     pub(super) fn told(&self, outcome: Outcome, operands: &[Operand<'_>]) -> Outcome {
         let Outcome { solid, mut sources, lattice, mut report, .. } = outcome;
         for source in &mut sources {
-            if let TriangleSource::Operand { operand: 0, triangle } = source {
-                let own = self.own.get(*triangle as usize).copied().flatten();
-                *source = own.map_or(TriangleSource::Closed, |triangle| TriangleSource::Operand { operand: 0, triangle });
+            match source {
+                TriangleSource::Operand { operand: 0, triangle } => {
+                    *source = self.own.get(*triangle as usize).copied().unwrap_or(TriangleSource::Closed);
+                }
+                TriangleSource::Lid { operand: 0, hole } => *hole += self.holes as u32,
+                _ => {}
             }
         }
+        report.holes.iter_mut().filter(|hole| hole.operand == 0).for_each(|hole| hole.number += self.holes);
         let meshes: Vec<&TriMesh> = operands.iter().map(|operand| operand.mesh).collect();
-        report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
+        report.closed_triangles = sources.iter().filter(|source| source.is_made_up()).count();
         report.triangles = TriangleCounts::of(&kinds_of(&solid, &sources, &meshes));
         Outcome::painted(solid, sources, lattice, report, operands)
     }

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
 use super::assembled::Assembled;
-use super::{BlockReport, BooleanError, Operand, Options, Outcome, Plan, boolean, plan};
+use super::{BlockReport, BooleanError, Operand, Options, Outcome, Plan, TriangleSource, boolean, plan};
 use crate::digits;
 use crate::fill::region;
 use crate::ldi::Expression;
@@ -242,9 +242,10 @@ impl Built {
         let (turned, sheets) = turn(&mut soup, ground)?;
         progress.check()?;
         let open = open_edges(&soup.mesh);
-        let mut assembled = Assembled { own: soup.source.iter().copied().map(Some).collect(), mesh: soup.mesh.clone() };
+        let own = soup.source.iter().map(|&triangle| TriangleSource::Operand { operand: 0, triangle }).collect();
+        let mut assembled = Assembled { own, mesh: soup.mesh.clone(), holes: 0 };
         let (walls, lid) = enclose(&mut assembled.mesh, &open, ground);
-        assembled.own.resize(assembled.mesh.triangles.len(), None);
+        assembled.own.resize(assembled.mesh.triangles.len(), TriangleSource::Closed);
         // Sheets face away from the base now, whatever rays say; closed surfaces may face anywhere.
         let orient = if sheets == soup.patch_count { OrientMode::Keep } else { options.orient };
         let report = BlockReport {

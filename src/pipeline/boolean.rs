@@ -3,6 +3,7 @@
 use super::apart::Apart;
 use super::exact::Exact;
 use super::frame::Frame;
+use super::holes::{Plan, planned};
 use super::order::Ordered;
 use super::rebuild::Job;
 use super::stages::Stages;
@@ -117,26 +118,36 @@ impl Task<'_> {
         if let Exact::Done(draft) = exact {
             return Ok(account::finished(*draft, &apart, stages));
         }
+        let mut holes = Plan::default();
         if let Exact::Open { closed, crosses } = exact {
             if meshes.len() > 1 {
                 if let Some(draft) = self.sealed(&closed, &rest, &mut stages)? {
                     return Ok(account::finished(draft, &apart, stages));
                 }
-            } else if let Exact::Done(draft) = job.lidded(&rest, &standing, &mut stages)? {
-                return Ok(account::finished(*draft, &apart, stages));
-            } else if crosses && let Some(mut draft) = self.cut_first(&rest, &mut stages)? {
-                draft.report.stages = stages.finish();
-                return Ok(draft);
+            } else {
+                stages.begin(Stage::Fill)?;
+                holes = planned(&rest, options, progress)?;
+                if let Exact::Done(draft) = job.lidded(&rest, &holes, &standing, &mut stages)? {
+                    return Ok(account::finished(*draft, &apart, stages));
+                }
+                if crosses && let Some(mut draft) = self.cut_first(&rest, &mut stages)? {
+                    draft.report.stages = stages.finish();
+                    return Ok(draft);
+                }
             }
         }
-        let draft = match job.beside(&rest, standing, &mut stages)? {
+        // Of the holes those that have no lid are closed from voxels.
+        let lidded = holes.over(&rest);
+        let mut draft = match job.beside(&lidded, standing, &mut stages)? {
             Some(draft) => draft,
             None => {
                 // What was made runs into what stands: all of it is made together.
                 apart = apart.none_standing();
+                holes = Plan::default();
                 job.alone(whole.unwrap_or(rest), h, &mut stages)?
             }
         };
+        draft.report.holes = holes.reports();
         Ok(account::finished(draft, &apart, stages))
     }
 }

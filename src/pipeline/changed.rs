@@ -45,7 +45,7 @@ impl Outcome {
         let source = |own: &Option<u32>| own.map_or(TriangleSource::Closed, |t| self.sources[t as usize]);
         let sources: Vec<TriangleSource> = own.iter().map(source).collect();
         let mut report = self.report.then(report);
-        report.closed_triangles = sources.iter().filter(|source| **source == TriangleSource::Closed).count();
+        report.closed_triangles = sources.iter().filter(|source| source.is_made_up()).count();
         report.triangles = TriangleCounts::of(&kinds_of(&solid, &sources, &meshes));
         progress.check()?;
         Ok(Self::painted(solid, sources, lattice, report, &operands))

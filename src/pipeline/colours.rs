@@ -27,7 +27,7 @@ pub fn carry_colours(mesh: &TriMesh, sources: &[TriangleSource], operands: &[Ope
     let of = |operand: u32| operands.get(operand as usize).and_then(|operand| Some((operand.mesh, operand.colours?)));
     let by_face = operands.iter().all(|operand| matches!(operand.colours, None | Some(Colours::Faces(_))));
     let corners = |t: usize| match sources[t] {
-        TriangleSource::Closed => [CLOSED; 3],
+        TriangleSource::Lid { .. } | TriangleSource::Closed => [CLOSED; 3],
         TriangleSource::Operand { operand, triangle } => of(operand).map_or([CLOSED; 3], |(own, colours)| {
             let source = own.corners(triangle as usize);
             mesh.corners(t).map(|p| colours.at(own, triangle as usize, weights(source, p)))

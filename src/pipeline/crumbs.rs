@@ -29,7 +29,8 @@ pub(super) fn without_crumbs(made: &mut Draft, soup: &Soup, h: f64) {
     for (source, &piece) in made.sources.iter().zip(&found.of) {
         let TriangleSource::Operand { operand, triangle } = *source else { continue };
         let range = soup.operands.range(operand as usize);
-        let Ok(n) = soup.source[range.clone()].binary_search(&triangle) else { continue };
+        let given = range.start..range.end.min(soup.source.len());
+        let Ok(n) = soup.source[given].binary_search(&triangle) else { continue };
         let shell = asked.of[range.start + n];
         if asked.list[shell as usize].is_body() {
             let best = largest.entry(shell).or_insert(piece);
@@ -95,8 +96,7 @@ fn sweep(outcome: &mut Draft, found: &Shells, stays: Vec<bool>) -> Dropped {
     let gone = found.list.iter().zip(&stays).filter(|(_, stays)| !**stays).map(|(shell, _)| shell);
     count_out(&mut outcome.report, gone);
     let dropped = take(&mut outcome.mesh, &mut outcome.sources, found, stays);
-    outcome.report.closed_triangles =
-        outcome.sources.iter().filter(|source| **source == TriangleSource::Closed).count();
+    outcome.report.closed_triangles = outcome.sources.iter().filter(|source| source.is_made_up()).count();
     dropped
 }
 

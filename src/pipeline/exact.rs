@@ -128,7 +128,7 @@ impl Job<'_> {
             TriangleSource::Operand { operand, triangle } => {
                 self.classes.get(operand as usize).and_then(|list| list.get(triangle as usize)).copied().unwrap_or(0)
             }
-            TriangleSource::Closed => 0,
+            TriangleSource::Lid { .. } | TriangleSource::Closed => 0,
         };
         let any = self.classes.iter().any(|list| !list.is_empty());
         if any { sources.iter().map(class).collect() } else { Vec::new() }

@@ -12,7 +12,7 @@ use crate::mesh::TriMesh;
 pub(super) fn kinds_of(mesh: &TriMesh, sources: &[TriangleSource], operands: &[&TriMesh]) -> Vec<TriangleKind> {
     let off = rounding(mesh);
     let kind = |(t, source): (usize, &TriangleSource)| match *source {
-        TriangleSource::Closed => TriangleKind::MadeUp,
+        TriangleSource::Lid { .. } | TriangleSource::Closed => TriangleKind::MadeUp,
         TriangleSource::Operand { operand, triangle } => match own(operands, operand, triangle) {
             Some(own) if same(mesh.corners(t), own).is_some() => TriangleKind::Kept,
             Some(own) if lies_in_plane(mesh.corners(t), own, off) => TriangleKind::Cut,

@@ -63,6 +63,7 @@ pub use field::{
     Built, FieldBand, FieldBuilder, FieldError, FieldOperand, FieldReport, OperandReport, field_grid, field_spacing,
     field_surface, field_values,
 };
+pub use holes::{NotOpened, Opened, holes};
 pub use hollow::{Drain, HollowError, HollowOptions, hollow, plan_hollow};
 pub use morphology::{MorphologyOptions, morphology, plan_morphology};
 pub use operand::Operand;
@@ -71,9 +72,9 @@ pub use outcome::Outcome;
 pub use outer::{OuterError, OuterOptions, outer, plan_outer};
 pub use plan::{Plan, plan};
 pub use report::{
-    BlockReport, CanalReport, DrainReport, Dropped, FilledHole, HollowReport, LdiReport, LostBody, MorphologyReport,
-    NothingEnclosed, OuterReport, Report, StageTime, StandingReport, ThickenReport, ThinRegion, ThinReport, Topology,
-    TopologyReport, TriangleCounts, TriangleKind, Warning,
+    BlockReport, CanalReport, DrainReport, Dropped, HoleClosing, HoleReport, HollowReport, LdiReport, LidShape,
+    LostBody, MorphologyReport, NotLidded, NothingEnclosed, OuterReport, Report, StageTime, StandingReport,
+    ThickenReport, ThinRegion, ThinReport, Topology, TopologyReport, TriangleCounts, TriangleKind, Warning,
 };
 pub use sizing::{LatticeError, MAX_RESOLUTION};
 pub use source::TriangleSource;

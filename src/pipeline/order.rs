@@ -32,10 +32,14 @@ impl<'a> Ordered<'a> {
     /// An outcome in terms of the order given.
     pub(super) fn back(&self, mut outcome: Outcome) -> Outcome {
         for source in &mut outcome.sources {
-            if let TriangleSource::Operand { operand, .. } = source {
+            if let TriangleSource::Operand { operand, .. } | TriangleSource::Lid { operand, .. } = source {
                 *operand = self.given.get(*operand as usize).map_or(*operand, |&given| given as u32);
             }
         }
+        for hole in &mut outcome.report.holes {
+            hole.operand = self.given.get(hole.operand).copied().unwrap_or(hole.operand);
+        }
+        outcome.report.holes.sort_by_key(|hole| (hole.operand, hole.number));
         let reports = &mut outcome.report.orient;
         if reports.len() == self.given.len() {
             let mut of_places = std::mem::take(reports);

@@ -9,12 +9,12 @@ use super::assembled::Assembled;
 use super::frame::Frame;
 use super::plan::area;
 use super::{
-    BooleanError, FilledHole, NothingEnclosed, Operand, Options, OuterReport, Outcome, Plan, Precision, SheetSide, SurfaceOptions, ThickenError,
-    ThickenOptions, VoxelSize, boolean, plan, sizing, thicken,
+    BooleanError, HoleReport, LidShape, NothingEnclosed, Operand, Options, OuterReport, Outcome, Plan, Precision, SheetSide, SurfaceOptions, ThickenError,
+    ThickenOptions, TriangleSource, VoxelSize, boolean, plan, sizing, thicken,
 };
 use crate::arrange::{ArrangeError, cut};
 use crate::digits;
-use crate::fill::{FillOptions, Surroundings, lid, rims};
+use crate::fill::{FillOptions, Style, Surroundings, lid, rims};
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
 use crate::orient::{OrientMode, OrientReport, PatchId};
@@ -117,13 +117,20 @@ pub fn outer<'a>(
             made.report.topology = None;
             left = assembled.left(&made.sources);
             // Lids of skins that lie within others are not there.
-            let there = lids.into_iter().filter(|lid| left[lid.triangles.clone()].contains(&true));
-            let placed = there.map(|mut lid| {
-                frame.place(&mut lid.hole.centre);
-                lid.hole
-            });
-            made.report.holes.splice(0..0, placed);
-            Some(assembled.told(made, &operands))
+            let mut holes = Vec::new();
+            for Closing { mut hole, triangles } in lids {
+                if left[triangles.clone()].contains(&true) {
+                    hole.number = holes.len() + 1;
+                    let source = TriangleSource::Lid { operand: 0, hole: hole.number as u32 };
+                    assembled.own[triangles].fill(source);
+                    frame.place(&mut hole.centre);
+                    holes.push(hole);
+                }
+            }
+            assembled.holes = holes.len();
+            let mut told = assembled.told(made, &operands);
+            told.report.holes.splice(0..0, holes);
+            Some(told)
         }
     };
     let report = found.report(&left, options);
@@ -211,7 +218,7 @@ struct Found {
 
 /// A lid, and its triangles in the mesh that was put together.
 struct Closing {
-    hole: FilledHole,
+    hole: HoleReport,
     triangles: Range<usize>,
 }
 
@@ -264,8 +271,9 @@ impl Found {
     /// The outer triangles with a lid over each rim that has one.
     fn closed(&self, options: &Options) -> (Assembled, Vec<Closing>) {
         let known = self.outer.positions.len();
-        let mut assembled =
-            Assembled { mesh: self.outer.clone(), own: self.number.iter().map(|&t| Some(self.soup.source[t as usize])).collect() };
+        let source = |&t: &u32| TriangleSource::Operand { operand: 0, triangle: self.soup.source[t as usize] };
+        let own = self.number.iter().map(source).collect();
+        let mut assembled = Assembled { mesh: self.outer.clone(), own, holes: 0 };
         let mut lids = Vec::new();
         let around = Surroundings::new(&self.outer);
         let asked = FillOptions { style: options.fill, ..FillOptions::default() };
@@ -277,9 +285,11 @@ impl Found {
             let first = assembled.mesh.triangles.len();
             assembled.mesh.triangles.extend(lid.triangles.iter().map(|corners| corners.map(number)));
             assembled.mesh.positions.extend_from_slice(&lid.positions);
-            lids.push(Closing { hole: FilledHole::of(&rim, &lid), triangles: first..assembled.mesh.triangles.len() });
+            let shape = if lid.style == Style::Smooth { LidShape::Smooth } else { LidShape::Flat };
+            let hole = HoleReport::of(lids.len() + 1, &rim, Ok((&lid, shape)));
+            lids.push(Closing { hole, triangles: first..assembled.mesh.triangles.len() });
         }
-        assembled.own.resize(assembled.mesh.triangles.len(), None);
+        assembled.own.resize(assembled.mesh.triangles.len(), TriangleSource::Closed);
         (assembled, lids)
     }
 

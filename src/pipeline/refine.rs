@@ -110,11 +110,9 @@ fn sides(collapsed: &Collapsed, facets: &Facets<'_>) -> Vec<Sides> {
 
 /// Where the triangles of a surface come from.
 pub(super) fn sources(surface: &Surface, facets: &Facets<'_>, soup: &Soup) -> Vec<TriangleSource> {
-    let source = |t: u32| match surface.facet(facets, t).and_then(|facet| facets.triangle(facet)) {
-        Some(own) => {
-            TriangleSource::Operand { operand: soup.operands.of(own) as u32, triangle: soup.source[own as usize] }
-        }
-        None => TriangleSource::Closed,
+    let source = |t: u32| {
+        let own = surface.facet(facets, t).and_then(|facet| facets.triangle(facet));
+        own.map_or(TriangleSource::Closed, |own| TriangleSource::in_soup(soup, own))
     };
     (0..surface.mesh.triangles.len() as u32).into_par_iter().map(source).collect()
 }

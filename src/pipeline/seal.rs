@@ -92,12 +92,9 @@ impl Task<'_> {
             if let Some(own) = whole.report.orient.pop() {
                 orient[n] = own;
             }
-            let own = |source: &TriangleSource| match *source {
-                TriangleSource::Operand { triangle, .. } => TriangleSource::Operand { operand, triangle },
-                TriangleSource::Closed => TriangleSource::Closed,
-            };
             stages.took(&whole.report.stages);
-            pile.add(&whole.mesh, (0..).zip(whole.sources.iter().map(own)));
+            whole.report.holes.iter_mut().for_each(|hole| hole.operand = n);
+            pile.add(&whole.mesh, (0..).zip(whole.sources.iter().map(|source| source.of_operand(operand))));
             report = Some(match report {
                 None => (whole.report, whole.lattice),
                 Some((report, lattice)) => (report.with(whole.report), lattice),

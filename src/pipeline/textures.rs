@@ -63,10 +63,12 @@ pub fn carry_texture(result: &TriMesh, sources: &[TriangleSource], operands: &[O
         let corners = result.corners(t);
         let (name, lies_there) = match sources[t] {
             TriangleSource::Operand { operand, triangle } => ((operand, triangle), true),
-            TriangleSource::Closed => match under.nearest(corners.iter().sum::<DVec3>() / 3.0) {
-                Some(name) => (name, false),
-                None => return (None, None),
-            },
+            TriangleSource::Lid { .. } | TriangleSource::Closed => {
+                match under.nearest(corners.iter().sum::<DVec3>() / 3.0) {
+                    Some(name) => (name, false),
+                    None => return (None, None),
+                }
+            }
         };
         let (operand, triangle) = (name.0 as usize, name.1 as usize);
         let Some(&Operand { mesh, texture: Some(texture), .. }) = operands.get(operand) else { return (None, None) };
@@ -178,14 +180,14 @@ impl Under {
                 let own = operands.get(operand as usize).map(|own| own.mesh.corners(triangle as usize));
                 own.is_some_and(|own| same(result.corners(t), own).is_none())
             }
-            TriangleSource::Closed => false,
+            TriangleSource::Lid { .. } | TriangleSource::Closed => false,
         };
         let made = (0..sources.len()).into_par_iter().any(is_made);
         let piece = |(n, operand): (usize, &Operand<'_>)| {
             let charts = operand.texture.filter(|_| made)?.charts(operand.mesh);
             Some((charts, Tree::of(operands, std::iter::once(n))))
         };
-        let all = sources.contains(&TriangleSource::Closed);
+        let all = sources.iter().any(|source| source.is_made_up());
         Self {
             all: all.then(|| Tree::of(operands, 0..operands.len())),
             pieces: operands.iter().enumerate().map(piece).collect(),

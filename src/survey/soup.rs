@@ -21,8 +21,10 @@ pub struct Soup {
     pub patch_count: usize,
     /// What cleaning and orientation did, for each operand.
     pub reports: Vec<OrientReport>,
-    /// The number of each triangle in its operand as given.
+    /// The number of each triangle in its operand as given. Triangles beyond these are lids over holes of the one operand, see [`Soup::with_lids`].
     pub source: Vec<u32>,
+    /// The number of the hole that each lid's triangle closes.
+    pub lids: Vec<u32>,
 }
 
 /// Why there is no soup.
@@ -52,6 +54,7 @@ impl Soup {
             patch_count: 0,
             reports: Vec::new(),
             source: Vec::new(),
+            lids: Vec::new(),
         };
         let mut counts = Vec::new();
         for (operand, input) in operands.iter().enumerate() {
@@ -95,8 +98,40 @@ impl Soup {
             patch_count: usize::from(count > 0),
             reports: vec![OrientReport::default()],
             source: (0..count as u32).collect(),
+            lids: Vec::new(),
             mesh,
         }
+    }
+
+    /// The same with lids over holes of the one operand, whose triangles come last and have no source. `lids`: new vertices, numbered after those of the soup, and
+    /// triangles; `of`: for each triangle the number of its hole, and a vertex of the patch that it closes.
+    ///
+    /// # Panics
+    /// Where there are several operands.
+    pub fn with_lids(&self, lids: &TriMesh, of: &[(u32, u32)]) -> Self {
+        assert_eq!(self.operands.count(), 1, "lids are those of one operand");
+        let mut closed = self.clone();
+        let mut patch_at = vec![PatchId::FIRST; self.mesh.positions.len()];
+        for (triangle, &patch) in self.mesh.triangles.iter().zip(&self.patch_of) {
+            triangle.iter().for_each(|&v| patch_at[v as usize] = patch);
+        }
+        closed.mesh.positions.extend_from_slice(&lids.positions);
+        closed.mesh.triangles.extend_from_slice(&lids.triangles);
+        closed.patch_of.extend(of.iter().map(|&(_, v)| patch_at[v as usize]));
+        closed.lids.extend(of.iter().map(|&(hole, _)| hole));
+        closed.operands = Operands::new([closed.mesh.triangles.len()]).with_inside(self.operands.inside);
+        closed
+    }
+
+    /// Where a triangle comes from: its operand and its number there. `None` for that of a lid.
+    pub fn given(&self, triangle: u32) -> Option<(usize, u32)> {
+        let source = self.source.get(triangle as usize)?;
+        Some((self.operands.of(triangle), *source))
+    }
+
+    /// The number of the hole that a triangle closes. `None` for one of an operand.
+    pub fn hole(&self, triangle: u32) -> Option<u32> {
+        self.lids.get((triangle as usize).checked_sub(self.source.len())?).copied()
     }
 
     /// Lets the rays decide the side of each patch, and turns patches over in the crossings and in the soup.
@@ -129,10 +164,10 @@ impl Soup {
             return Vec::new();
         }
         let class = |t: usize| {
-            let given = of_operands.get(self.operands.of(t as u32));
-            given.and_then(|list| list.get(self.source[t] as usize)).copied().unwrap_or(0)
+            let (operand, source) = self.given(t as u32)?;
+            of_operands.get(operand)?.get(source as usize).copied()
         };
-        (0..self.mesh.triangles.len()).map(class).collect()
+        (0..self.mesh.triangles.len()).map(|t| class(t).unwrap_or(0)).collect()
     }
 
     /// The planes of the triangles, lattice coordinates.

@@ -76,6 +76,7 @@ fn sheets_need_a_thickness() {
     refused("repair testdata/open_sheet.obj --thickness 1", 2, &["--outer"]);
     refused("repair testdata/torus.ply --outer 1e-6%", 2, &["cannot be rolled", "at least"]);
     refused("repair testdata/torus.ply --outer 0", 2, &["above zero"]);
+    refused("repair testdata/torus.ply --outer --holes 1", 2, &["--holes"]);
     refused("repair testdata/torus.ply --outer 0.3% --max-memory 20M", 5, &["take a larger one"]);
     assert_empty(&folder);
     let thick = run_in(&folder, "repair testdata/open_sheet.obj --outer 5% --thickness 1 -o OUT/plate.stl").exits(0);

@@ -208,6 +208,34 @@ fn morphology_verbs_say_what_they_did_and_refuse_what_cannot_be() {
 }
 
 #[test]
+fn holes_are_listed_and_left_open_where_that_is_asked_for() {
+    let folder = folder();
+    let listed = run_in(&folder, "inspect testdata/open_cube.off --holes").exits(0);
+    assert!(listed.text().contains("1: at") && listed.text().contains("flat, 2 triangles"), "{}", listed.text());
+    let report = run_in(&folder, "inspect testdata/open_cube.off --holes --json").exits(0).json();
+    assert_eq!(report["result"]["holes"][0]["closed_by"]["lid"], "flat");
+    run_in(&folder, "inspect testdata/open_cube.off --fill flat").exits(2);
+    for flags in ["--fill none", "--max-hole 10%"] {
+        let line = format!("repair testdata/open_cube.off -o OUT/open.off --force --map OUT/map.ply {flags}");
+        let run = run_in(&folder, &format!("{line} --json")).exits(3);
+        let report = run.json();
+        let output = &report["result"]["output"]["validity"];
+        assert_eq!((&output["triangles"], &output["open_edges"]), (&10.into(), &4.into()), "{flags}: {output}");
+        assert_eq!(report["result"]["pipeline"]["holes"][0]["closed_by"], "left_open");
+        run_in(&folder, &line).exits(3).says(&["1 hole is left open", "left open", "4 open edges: no solid"]);
+        let map = run_in(&folder, "inspect OUT/map.ply --json").exits(0).json();
+        assert_eq!(map["inputs"][0]["validity"]["triangles"], 10);
+    }
+    for flags in ["--max-hole 2000%", "--holes 1"] {
+        run_in(&folder, &format!("repair testdata/open_cube.off -o OUT/whole.off --force {flags}")).exits(0);
+        assert_eq!(solid(&folder, "whole.off")["triangles"], 12);
+    }
+    run_in(&folder, "repair testdata/open_cube.off -o OUT/none.off --holes 2").exits(2).says(&["no hole 2"]);
+    run_in(&folder, "repair testdata/open_cube.off -o OUT/none.off --fill none --holes 1").exits(2);
+    run_in(&folder, "union testdata/open_cube.off testdata/open_cube.off -o OUT/none.off --fill none").exits(2);
+}
+
+#[test]
 fn canals_are_listed_and_filled_by_number() {
     let folder = folder();
     let canals = |flags: &str| {
@@ -282,13 +310,13 @@ fn the_map_shows_what_closes_holes_and_the_fit_has_switches() {
     let pipeline = &report["result"]["pipeline"];
     assert_eq!((&pipeline["triangles"]["kept"], &pipeline["lattice"]), (&10.into(), &false.into()));
     let holes = pipeline["holes"].as_array().expect("a list");
-    assert!(holes.len() == 1 && holes[0]["edges"] == 4 && holes[0]["style"] == "flat", "{holes:?}");
+    assert!(holes.len() == 1 && holes[0]["edges"] == 4 && holes[0]["closed_by"]["lid"] == "flat", "{holes:?}");
     for fill in ["flat", "smooth"] {
         let line = format!("repair testdata/open_cube.off -o OUT/out.off --force --fill {fill}");
         run_in(&folder, &line).exits(0).says(&["1 hole closed with "]);
         let report = run_in(&folder, &format!("{line} --json")).exits(0).json();
         assert_eq!(
-            (&report["options"]["fill"], &report["result"]["pipeline"]["holes"][0]["style"]),
+            (&report["options"]["fill"], &report["result"]["pipeline"]["holes"][0]["closed_by"]["lid"]),
             (&fill.into(), &fill.into())
         );
     }

@@ -89,7 +89,7 @@ pub fn compare(
 /// apart, and that they balance.
 pub fn check_closed(device: &Device, name: &str, mesh: &TriMesh) {
     let operands = Operands::new([mesh.triangles.len()]);
-    for (resolution, factor, methods) in [(64, 1, &BOTH[..]), (128, 1, &BOTH[..1]), (64, 2, &BOTH[..1])] {
+    for (resolution, factor, methods) in [(64, 1, &BOTH[..]), (96, 1, &BOTH[..1]), (48, 2, &BOTH[..1])] {
         let lattice = stages::lattice_of(mesh, resolution);
         let methods: Vec<_> = methods.iter().copied().map(by).collect();
         let layers = compare(device, &format!("{name} at {resolution}"), mesh, &lattice, factor, &methods);

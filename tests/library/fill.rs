@@ -5,7 +5,10 @@ use crate::common::shapes::{ball, cuboid, torus};
 use glam::DVec3;
 use meshwright::fill::Style;
 use meshwright::mesh::TriMesh;
-use meshwright::pipeline::{BooleanError, Method, Options, Outcome, TriangleSource, VoxelSize, repair};
+use meshwright::pipeline::{
+    BooleanError, HoleClosing, LidShape, Method, NotLidded, NotOpened, Options, Outcome, TriangleSource, VoxelSize,
+    holes, repair,
+};
 use meshwright::progress::Progress;
 
 fn options(fill: Style) -> Options {
@@ -33,7 +36,7 @@ fn without(mesh: &TriMesh, at: DVec3, radius: f64) -> TriMesh {
 
 /// All triangles of the input are there, and all others close holes.
 fn check_kept(input: &TriMesh, outcome: &Outcome) {
-    let own = outcome.sources.iter().filter(|source| **source != TriangleSource::Closed).count();
+    let own = outcome.sources.iter().filter(|source| !source.is_made_up()).count();
     assert_eq!(own, input.triangles.len());
     assert_eq!(outcome.report.triangles.kept, own);
     let listed: usize = outcome.report.holes.iter().map(|hole| hole.triangles).sum();
@@ -50,7 +53,8 @@ fn holes_in_round_surfaces_are_closed_round_and_nothing_else_changes() {
         check_kept(&open, outcome);
         assert_eq!(outcome.report.holes.len(), 1);
     }
-    assert_eq!((smooth.report.holes[0].style, flat.report.holes[0].style), (Style::Smooth, Style::Flat));
+    let shapes = [&smooth, &flat].map(|outcome| outcome.report.holes[0].closed_by);
+    assert_eq!(shapes, [LidShape::Smooth, LidShape::Flat].map(HoleClosing::Lid));
     assert!(flat.report.holes[0].triangles < smooth.report.holes[0].triangles);
     let off = |outcome: &Outcome| (volume(&outcome.solid) / volume(&whole) - 1.0).abs();
     assert!(off(&smooth) < 2e-4 && off(&flat) > 1e-3, "{} and {}", off(&smooth), off(&flat));
@@ -103,7 +107,9 @@ fn what_faces_itself_over_a_gap_is_joined() {
     let open = TriMesh { positions: tube.positions.clone(), triangles }.welded();
     let outcome = repaired(&open, &options(Style::Auto));
     let found = state(&outcome.solid, true);
-    assert!(outcome.report.holes.is_empty() && found.bodies == 1, "{:?}", outcome.report.holes);
+    let holes = &outcome.report.holes;
+    assert!(holes.len() == 2 && found.bodies == 1, "{holes:?}");
+    assert!(holes.iter().all(|hole| hole.closed_by == HoleClosing::Voxels(NotLidded::NoHole)), "{holes:?}");
 }
 
 #[test]
@@ -114,4 +120,89 @@ fn sheets_are_not_closed_and_voxels_can_be_asked_for() {
     let open = without(&whole, DVec3::X, 0.3);
     let outcome = repaired(&open, &Options { method: Method::Voxel, ..options(Style::Auto) });
     assert!(outcome.report.holes.is_empty() && outcome.report.lattice);
+}
+
+fn closings(outcome: &Outcome) -> Vec<HoleClosing> {
+    outcome.report.holes.iter().map(|hole| hole.closed_by).collect()
+}
+
+/// The one beside the other: a hole that a lid closes keeps it where others need voxels.
+#[test]
+fn voxels_close_only_the_holes_that_no_lid_closes() {
+    let tube = torus(96, 48);
+    let narrow = |p: &DVec3| p.x > 0.0 && p.y.abs() < 0.1;
+    let keep = |t: &usize| !narrow(&(tube.corners(*t).iter().sum::<DVec3>() / 3.0));
+    let triangles = (0..tube.triangles.len()).filter(keep).map(|t| tube.triangles[t]).collect();
+    let torn = TriMesh { positions: tube.positions.clone(), triangles }.welded();
+    let open = without(&torn, DVec3::new(-1.0, 0.0, 0.3), 0.12);
+    let outcome = repaired(&open, &options(Style::Auto));
+    let voxels = HoleClosing::Voxels(NotLidded::NoHole);
+    assert_eq!(closings(&outcome), [voxels, voxels, HoleClosing::Lid(LidShape::Smooth)]);
+    let of_lid = outcome.sources.iter().filter(|source| matches!(source, TriangleSource::Lid { hole: 3, .. })).count();
+    assert_eq!(of_lid, outcome.report.holes[2].triangles);
+    assert!(outcome.report.lattice);
+}
+
+/// A ball cut off along a wave: no plane is near its rim, and a smooth lid would be what was cut off.
+#[test]
+fn where_a_body_is_cut_off_unevenly_the_lid_is_a_level_of_the_winding_number() {
+    let whole = ball(4, |_| 1.0);
+    let below = |p: DVec3| p.z < 0.4 + 0.15 * (3.0 * p.y.atan2(p.x)).sin();
+    let keep = |t: &usize| below(whole.corners(*t).iter().sum::<DVec3>() / 3.0);
+    let triangles = (0..whole.triangles.len()).filter(keep).map(|t| whole.triangles[t]).collect();
+    let most = TriMesh { positions: whole.positions.clone(), triangles }.welded();
+    let outcome = repaired(&most, &options(Style::Auto));
+    check_kept(&most, &outcome);
+    assert_eq!(closings(&outcome), [HoleClosing::Lid(LidShape::Level)]);
+    // The lid of voxels is the same level.
+    let voxels = repaired(&most, &Options { method: Method::Voxel, ..options(Style::Auto) });
+    let off = (volume(&outcome.solid) / volume(&voxels.solid) - 1.0).abs();
+    assert!(off < 0.005, "{off}");
+}
+
+#[test]
+fn what_faces_inwards_is_closed_and_turned_over() {
+    let whole = ball(3, |_| 1.0);
+    let mut open = without(&whole, DVec3::X, 0.4);
+    open.triangles.iter_mut().for_each(|t| t.swap(0, 1));
+    let outcome = repaired(&open, &options(Style::Auto));
+    check_kept(&open, &outcome);
+    assert_eq!(outcome.report.orient[0].flipped_patches, 1);
+    assert!((volume(&outcome.solid) / volume(&whole) - 1.0).abs() < 0.01);
+}
+
+/// A tube that ends open inside a box, as spouts and handles of teapots do.
+#[test]
+fn what_is_open_inside_of_another_body_is_closed_there() {
+    let mut both = cuboid(DVec3::ZERO, DVec3::splat(2.0));
+    let mut peg = cuboid(DVec3::new(0.5, 0.5, 1.0), DVec3::new(1.5, 1.5, 3.0));
+    let at_end = |peg: &TriMesh, t: usize| peg.corners(t).iter().all(|p| p.z == 1.0);
+    let sides = (0..12).filter(|&t| !at_end(&peg, t)).map(|t| peg.triangles[t]).collect();
+    peg.triangles = sides;
+    both.append(&peg);
+    let outcome = repaired(&both, &options(Style::Auto));
+    assert!(!outcome.report.lattice);
+    assert!((volume(&outcome.solid) - 9.0).abs() < 1e-9, "{}", volume(&outcome.solid));
+}
+
+#[test]
+fn holes_are_listed_before_a_repair_and_may_be_left_open() {
+    let whole = torus(96, 48);
+    let places = [DVec3::X * 1.3, DVec3::new(-1.0, 0.0, 0.3), DVec3::new(0.0, 1.0, -0.3)];
+    let open = places.iter().zip([0.25, 0.15, 0.1]).fold(whole, |mesh, (&at, radius)| without(&mesh, at, radius));
+    let options = options(Style::Auto);
+    let mut outcome = repaired(&open, &options);
+    assert_eq!(holes(&open, &options, &Progress::none()).expect("a list"), outcome.report.holes);
+    let lids: Vec<usize> = outcome.report.holes.iter().map(|hole| hole.triangles).collect();
+    assert_eq!(outcome.open(&[4]).map(|_| ()), Err(NotOpened::NoHole { number: 4, count: 3 }));
+    let all = outcome.solid.triangles.len();
+    let opened = outcome.clone().open(&[1, 3]).expect("they are there");
+    assert_eq!(opened.mesh.triangles.len(), all - lids[0] - lids[2]);
+    let rims = meshwright::fill::rims(&opened.mesh);
+    assert_eq!(rims.len(), 2);
+    // Without any lid it is the mesh that was given.
+    let opened = outcome.open_all();
+    assert_eq!(opened.mesh.triangles.len(), open.triangles.len());
+    assert_eq!((outcome.report.triangles.made_up, outcome.report.closed_triangles), (0, 0));
+    assert!(outcome.report.holes.iter().all(|hole| hole.closed_by == HoleClosing::LeftOpen));
 }

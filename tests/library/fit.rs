@@ -99,7 +99,7 @@ fn every_triangle_of_the_result_knows_where_it_comes_from() {
     for (t, source) in outcome.sources.iter().enumerate() {
         let own = normal(&outcome.solid, t);
         match *source {
-            TriangleSource::Closed => assert!(own.dot(lid_normal) > 0.999),
+            TriangleSource::Lid { .. } | TriangleSource::Closed => assert!(own.dot(lid_normal) > 0.999),
             TriangleSource::Operand { operand, triangle } => {
                 assert_eq!(operand, 0);
                 assert!(own.dot(normal(&open, triangle as usize)) > 0.999);

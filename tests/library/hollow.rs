@@ -4,9 +4,7 @@ use crate::common::repaired::hollowed;
 use crate::common::shapes;
 use glam::DVec3;
 use meshwright::mesh::{ClosestTree, TriMesh, ValidateOptions, Validity, validate};
-use meshwright::pipeline::{
-    Drain, HollowError, HollowOptions, MorphologyError, SurfaceOptions, TriangleSource, VoxelSize,
-};
+use meshwright::pipeline::{Drain, HollowError, HollowOptions, MorphologyError, SurfaceOptions, VoxelSize};
 use meshwright::progress::Progress;
 
 fn state(mesh: &TriMesh) -> Validity {
@@ -40,7 +38,7 @@ fn a_block_becomes_a_box_with_walls_of_that_thickness() {
     assert!((report.volume_before - 480.0).abs() < 1e-9 && report.volume_after == after.volume);
     // Every point of the cavity is as far from the surface as the wall is thick.
     let tree = ClosestTree::of_mesh(&mesh);
-    for (t, source) in made.sources.iter().enumerate().filter(|(_, source)| **source == TriangleSource::Closed) {
+    for (t, source) in made.sources.iter().enumerate().filter(|(_, source)| source.is_made_up()) {
         for p in made.solid.corners(t) {
             let wall = tree.nearest(p).expect("triangles").distance;
             assert!((wall - 1.0).abs() < 0.02, "a wall of {wall} at {p} ({source:?})");

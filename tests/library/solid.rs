@@ -239,7 +239,7 @@ proptest! {
             boolean(&operands, expression, &options(20), &Progress::none()).map(|outcome| {
                 let name = |source: &TriangleSource| match *source {
                     TriangleSource::Operand { operand, triangle } => operands[operand as usize].corners(triangle as usize).map(Some),
-                    TriangleSource::Closed => [None; 3],
+                    TriangleSource::Lid { .. } | TriangleSource::Closed => [None; 3],
                 };
                 let sources: Vec<_> = outcome.sources.iter().map(name).collect();
                 (outcome.solid, sources)

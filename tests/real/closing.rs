@@ -10,7 +10,7 @@ use crate::data;
 fn eight_plates_with_gaps_wider_than_the_ball_come_back_as_they_are() {
     let Some(data) = data() else { return };
     let mesh = data.mesh("clean/88566.stl");
-    let surface = SurfaceOptions::new(VoxelSize::Along(128));
+    let surface = SurfaceOptions::new(VoxelSize::Along(96));
     let options = MorphologyOptions { operation: Operation::Close, radius: 1.5, sharp: None, surface };
     let outcome = morphed(&mesh, &options).expect("a solid");
     assert_eq!(outcome.report.morphology.expect("morphology was done").made, 0);

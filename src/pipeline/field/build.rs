@@ -130,10 +130,7 @@ impl<'a> FieldBuilder<'a> {
             return Ok(self.exact(operand, given.mesh));
         }
         let outcome = repair(given, self.options, self.progress)?;
-        let origins = outcome.sources.iter().map(|source| match *source {
-            TriangleSource::Operand { triangle, .. } => TriangleSource::Operand { operand: operand as u32, triangle },
-            TriangleSource::Closed => TriangleSource::Closed,
-        });
+        let origins = outcome.sources.iter().map(|source| source.of_operand(operand as u32));
         let source = self.sources.add(&outcome.solid, origins);
         let field = MeshField::new(&outcome.solid, PointSign::Pseudonormal, source);
         Ok(self.remember(operand, "repaired", Arc::new(field)))

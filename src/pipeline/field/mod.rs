@@ -145,7 +145,7 @@ pub fn field_surface(
     }
     let source = |t: u32| sources.origin(surface.facet(&facets, t).and_then(|facet| facets.triangle(facet)));
     let origins: Vec<TriangleSource> = (0..surface.mesh.triangles.len() as u32).into_par_iter().map(source).collect();
-    let made = origins.iter().filter(|source| **source == TriangleSource::Closed).count();
+    let made = origins.iter().filter(|source| source.is_made_up()).count();
     let report = Report {
         voxel: lattice.h,
         dims: lattice.dims.to_array(),

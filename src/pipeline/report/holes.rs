@@ -1,13 +1,17 @@
-//! Holes that were closed from their rims alone.
+//! The holes of an operand, and how each was closed.
 
 use serde::Serialize;
 
-use crate::fill::{Lid, Rim, Style};
+use crate::fill::{Lid, Rim};
 
-/// A hole and the lid over it. Model units.
+/// A hole, and what closes it. Model units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct FilledHole {
+pub struct HoleReport {
+    /// The operand that it is in, from 0.
+    pub operand: usize,
+    /// Its number among the holes of its operand, from 1; the longest rim comes first.
+    pub number: usize,
     /// The middle of the rim.
     pub centre: [f64; 3],
     /// Edges of the rim.
@@ -18,26 +22,103 @@ pub struct FilledHole {
     pub diameter: f64,
     /// The largest distance of a vertex of the rim from its plane.
     pub flatness: f64,
-    /// How the lid was made.
-    pub style: Style,
-    /// Triangles of the lid.
+    /// What closes it.
+    pub closed_by: HoleClosing,
+    /// Triangles of the lid; 0 where there is none.
     pub triangles: usize,
-    /// Area of the lid, square model units.
+    /// Area of the lid, square model units; 0 where there is none.
     pub area: f64,
 }
 
-impl FilledHole {
+/// What closes a hole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum HoleClosing {
+    /// A lid made from the rim alone.
+    Lid(LidShape),
+    /// Surface made from voxels, since there is no lid.
+    Voxels(NotLidded),
+    /// Nothing: it is left open, as is asked for.
+    LeftOpen,
+}
+
+/// The shape of a lid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum LidShape {
+    /// In one plane or a few, with no more vertices than needed.
+    Flat,
+    /// It continues the curvature of what is around.
+    Smooth,
+    /// Along the level ½ of the winding number.
+    Level,
+}
+
+/// Why a rim has no lid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum NotLidded {
+    /// Rays are to settle what is inside, not winding numbers.
+    Rays,
+    /// There are more than 5,000 rims.
+    TooMany,
+    /// The vertices of the rim lie on a line.
+    NoArea,
+    /// Every lid would repeat an edge or a triangle of the mesh.
+    Folded,
+    /// The lids would be more than half as large as the surface that they close.
+    Sheet,
+    /// The surface beside would face inwards.
+    FacesInwards,
+    /// Of another part of the mesh it is not known which side is outside.
+    Beside,
+    /// Winding numbers do not part inside and outside there, as between rims that face each other.
+    NoHole,
+    /// Every lid would run into other surface.
+    Meets,
+}
+
+impl std::fmt::Display for NotLidded {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Rays => "rays are to settle what is inside",
+            Self::TooMany => "there are too many rims",
+            Self::NoArea => "its rim lies on a line",
+            Self::Folded => "every lid would repeat an edge",
+            Self::Sheet => "lids would be larger than half of the surface beside",
+            Self::FacesInwards => "the surface beside would face inwards",
+            Self::Beside => "of another part it is not known which side is outside",
+            Self::NoHole => "inside and outside are not parted there",
+            Self::Meets => "every lid would run into other surface",
+        })
+    }
+}
+
+impl HoleReport {
     /// What there is to say of a rim and its lid.
-    pub(crate) fn of(rim: &Rim, lid: &Lid) -> Self {
+    pub(crate) fn of(number: usize, rim: &Rim, lid: Result<(&Lid, LidShape), NotLidded>) -> Self {
         Self {
+            operand: 0,
+            number,
             centre: rim.centre.to_array(),
             edges: rim.vertices.len(),
             perimeter: rim.perimeter,
             diameter: rim.diameter,
             flatness: rim.flatness,
-            style: lid.style,
-            triangles: lid.triangles.len(),
-            area: lid.area,
+            closed_by: match lid {
+                Ok((_, shape)) => HoleClosing::Lid(shape),
+                Err(why) => HoleClosing::Voxels(why),
+            },
+            triangles: lid.map_or(0, |(lid, _)| lid.triangles.len()),
+            area: lid.map_or(0.0, |(lid, _)| lid.area),
         }
+    }
+
+    /// Whether a lid made from the rim alone closes it.
+    pub fn has_lid(&self) -> bool {
+        matches!(self.closed_by, HoleClosing::Lid(_))
     }
 }

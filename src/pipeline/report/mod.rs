@@ -10,7 +10,7 @@ mod topology;
 mod triangles;
 mod warning;
 
-pub use holes::FilledHole;
+pub use holes::{HoleClosing, HoleReport, LidShape, NotLidded};
 pub use nothing::NothingEnclosed;
 pub use operations::{CanalReport, DrainReport, HollowReport, MorphologyReport, ThickenReport};
 pub use sheets::{BlockReport, OuterReport};
@@ -47,8 +47,8 @@ pub struct Report {
     pub exact: Option<ArrangeReport>,
     /// Triangles of operands with holes that were cut where they cross each other, before rays were cast.
     pub cut: usize,
-    /// Holes that were closed from their rims alone, the longest first; where lids come from voxels, none are listed.
-    pub holes: Vec<FilledHole>,
+    /// The holes of each operand, the longest first, and what closes them; none are listed where all surface is made from voxels as is asked for.
+    pub holes: Vec<HoleReport>,
     /// Bodies, voids and tunnels before and after; `None` where an operation changes them.
     pub topology: Option<TopologyReport>,
     /// Cleaning and orientation of each operand.
