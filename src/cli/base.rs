@@ -45,7 +45,9 @@ impl FromStr for BaseChoice {
             return Ok(Self::Plane { axis, negative: false, at: None });
         }
         match rest.parse::<Length>().map_err(|error| error.to_string())? {
-            Length::Percent(_) | Length::Voxels(_) => Err(format!("`{at}` is no place on an axis, such as 0, 1.5 or -5mm")),
+            Length::Percent(_) | Length::Voxels(_) => {
+                Err(format!("`{at}` is no place on an axis, such as 0, 1.5 or -5mm"))
+            }
             length => Ok(Self::Plane { axis, negative, at: Some(length) }),
         }
     }

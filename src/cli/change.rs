@@ -10,14 +10,14 @@ use super::length::{Length, Scale};
 use super::maker::Maker;
 use super::report::RunReport;
 use super::shared_args::CommonArgs;
+use super::site::{Failed, Site};
 use super::words::{self, UnitName};
 use crate::mesh::TriMesh;
 use crate::morphology::{Canal, Operation};
 use crate::pipeline::{
-    self, Advice, BooleanError, CanalError, CanalOptions, CanalReport, HollowOptions, MorphologyOptions, Operand,
-    Outcome, Plan, Remove, SheetSide, SurfaceOptions, ThickenOptions, VoxelSize,
+    self, Advice, BooleanError, CanalError, CanalOptions, CanalReport, HollowOptions, MorphologyOptions, Outcome, Plan,
+    Remove, SheetSide, SurfaceOptions, ThickenOptions, VoxelSize,
 };
-use crate::progress::Progress;
 
 /// A change, as asked for.
 #[derive(Debug, Clone)]
@@ -186,23 +186,6 @@ impl Change {
 
 fn only_after_a_repair() -> Failure {
     Failure::internal("what is made in another way than by a repair is no change of one")
-}
-
-/// Makes a failure of a pipeline's error.
-pub type Failed<'a> = dyn Fn(&dyn Advice) -> Failure + 'a;
-
-/// What a change is made with.
-pub struct Site<'a> {
-    /// What the solid was made of.
-    pub operands: &'a [Operand<'a>],
-    /// How new surface is made.
-    pub surface: &'a SurfaceOptions,
-    /// What lengths are measured against.
-    pub scale: &'a Scale,
-    /// What an error means.
-    pub failed: &'a Failed<'a>,
-    /// How far it is, and whether it is to stop.
-    pub progress: &'a Progress,
 }
 
 impl Site<'_> {

@@ -95,10 +95,15 @@ fn seen(found: &OuterReport, widest: Option<f64>, unit: UnitName<'_>) -> Vec<Str
         };
         parts.push(format!("{inner} went, which it does not come to{patches}"));
     }
-    parts.extend(widest.map(|widest| format!("the widest hole that it does not pass is {} across", words::length(widest, unit))));
+    parts.extend(
+        widest.map(|widest| format!("the widest hole that it does not pass is {} across", words::length(widest, unit))),
+    );
     if let Some(thickness) = found.thickness {
         let (sheets, area) = (words::plural(found.sheet_triangles, "triangle"), words::area(found.sheet_area, unit));
-        parts.push(format!("{sheets} ({area}) that it sees from both sides made {} thick", words::length(thickness, unit)));
+        parts.push(format!(
+            "{sheets} ({area}) that it sees from both sides made {} thick",
+            words::length(thickness, unit)
+        ));
     }
     parts
 }

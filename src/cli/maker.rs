@@ -3,12 +3,12 @@
 use serde_json::json;
 
 use super::base::BaseChoice;
-use super::change::{Failed, Site};
 use super::exit::Failure;
 use super::length::{Length, Scale};
 use super::report::RunReport;
+use super::site::{Failed, Site};
 use crate::mesh::TriMesh;
-use crate::pipeline::{self, Operand, Options, OuterOptions, Outcome, Plan};
+use crate::pipeline::{self, Operand, Options, Outcome, OuterOptions, Plan};
 
 /// What is to be made.
 #[derive(Debug, Clone)]
@@ -29,17 +29,9 @@ pub enum Maker {
 
 impl Maker {
     /// What it would cost.
-    pub fn plan(
-        &self,
-        mesh: &TriMesh,
-        options: &Options,
-        scale: &Scale,
-        failed: &Failed<'_>,
-    ) -> Result<Plan, Failure> {
+    pub fn plan(&self, mesh: &TriMesh, options: &Options, scale: &Scale, failed: &Failed<'_>) -> Result<Plan, Failure> {
         match self {
-            Self::Block { base } => {
-                pipeline::plan_block(mesh, base.resolve(scale)?, options).map_err(|e| failed(&e))
-            }
+            Self::Block { base } => pipeline::plan_block(mesh, base.resolve(scale)?, options).map_err(|e| failed(&e)),
             Self::Outer { ball, thickness } => {
                 let options = outer_options(*ball, *thickness, options, scale)?;
                 pipeline::plan_outer(mesh, &options).map_err(|e| failed(&e))

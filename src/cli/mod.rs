@@ -58,6 +58,7 @@ mod sdf_args;
 mod session;
 mod shared_args;
 mod side;
+mod site;
 mod slice;
 mod solid;
 mod solid_args;

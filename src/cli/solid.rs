@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::change::{self, Change, Changed, Site};
+use super::change::{self, Change, Changed};
 use super::entries::OutputEntry;
 use super::epilogue;
 use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
@@ -18,6 +18,7 @@ use super::paint::{self, Arranged};
 use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
+use super::site::Site;
 use super::solid_args::SolidArgs;
 use super::target::Target;
 use super::{backend, doubts, keep, limits, machine, negative, summary, table, weights, words};

@@ -77,7 +77,8 @@ fn settle(of: &mut [Option<Part>], mesh: &TriMesh, patch_of: &[PatchId]) {
         while let Some(&t) = members.get(next) {
             next += 1;
             let beside = (0..3).filter_map(|k| neighbours.across(t, k));
-            for other in beside.map(|across| across.triangle).filter(|&n| patch_of[n as usize] == patch_of[t as usize]) {
+            for other in beside.map(|across| across.triangle).filter(|&n| patch_of[n as usize] == patch_of[t as usize])
+            {
                 match of[other as usize] {
                     Some(Part::Outer) => outer = true,
                     Some(Part::Inner) => inner = true,

@@ -10,5 +10,5 @@ mod reach;
 mod sight;
 
 pub use judge::{Part, Parts, judge};
-pub use reach::{Reach, ReachError};
-pub use sight::{Sight, Sights, sights};
+pub use reach::{Reach, ReachError, Sight};
+pub use sight::{Sights, sights};

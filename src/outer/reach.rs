@@ -5,7 +5,6 @@ use std::sync::Arc;
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-use super::Sight;
 use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Lattice, Slot, brick_of, index_in_brick};
 use crate::mesh::{Bounds, TriMesh};
 use crate::progress::{Progress, Stopped};
@@ -30,6 +29,17 @@ const LAST: u64 = FIRST << 7;
 
 /// A bit for each voxel of a brick: one number a slice, x fastest.
 type Bits = [u64; BRICK as usize];
+
+/// Where a ball is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Sight {
+    /// There is no room for it.
+    Nowhere,
+    /// In a space that it cannot leave.
+    Chamber,
+    /// Where it comes from far outside.
+    Outside,
+}
 
 /// Why it cannot be known where a ball comes to.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -92,12 +102,7 @@ impl Reach {
     ///
     /// # Errors
     /// See [`ReachError`].
-    pub fn of(
-        mesh: &TriMesh,
-        diameter: f64,
-        max_memory: Option<u64>,
-        progress: &Progress,
-    ) -> Result<Self, ReachError> {
+    pub fn of(mesh: &TriMesh, diameter: f64, max_memory: Option<u64>, progress: &Progress) -> Result<Self, ReachError> {
         let (lattice, band, cost) = Self::plan(mesh, diameter)?;
         if let Some(allowed) = max_memory.filter(|&allowed| cost.memory > allowed) {
             return Err(ReachError::Memory { diameter, needed: cost.memory, allowed });
@@ -126,7 +131,8 @@ impl Reach {
         for (n, &brick) in reach.bricks.active().iter().enumerate() {
             seeds.push((brick, std::array::from_fn(|z| deep[n][z] & !outside.near[n][z])));
             for axis in IVec3::AXES {
-                let beside = [brick + axis, brick - axis].into_iter().filter(|&next| reach.is_far_and_new(&outside, next));
+                let beside =
+                    [brick + axis, brick - axis].into_iter().filter(|&next| reach.is_far_and_new(&outside, next));
                 seeds.extend(beside.map(|next| (next, [u64::MAX; 8])));
             }
         }

@@ -3,7 +3,7 @@
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
-use super::Reach;
+use super::{Reach, Sight};
 use crate::mesh::{ClosestTree, Plane, TriMesh};
 use crate::progress::{Progress, Stopped};
 
@@ -18,17 +18,6 @@ const ARRIVED: f64 = 1e-6;
 
 /// Places along the side of a triangle, at most.
 const MOST_PLACES: usize = 16;
-
-/// Where a ball is that touches one side of a triangle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Sight {
-    /// There is no room for it.
-    Nowhere,
-    /// In a space that it cannot leave.
-    Chamber,
-    /// Where it comes from far outside.
-    Outside,
-}
 
 /// Where a ball is that touches a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

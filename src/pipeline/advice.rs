@@ -1,8 +1,8 @@
 //! What kind of trouble an error is, and what to try: the same questions for the errors of all pipelines.
 
 use super::{
-    BlockError, BooleanError, CanalError, DistanceError, FieldError, HollowError, LimitError, MorphologyError, OuterError, ThickenError,
-    ThicknessError,
+    BlockError, BooleanError, CanalError, DistanceError, FieldError, HollowError, LimitError, MorphologyError,
+    OuterError, ThickenError, ThicknessError,
 };
 use crate::arrange::ArrangeError;
 use crate::field::FillError;

@@ -43,7 +43,9 @@ pub enum BlockError {
         depth: f64,
     },
     /// The surface has no open edge.
-    #[error("the surface has no open edge, so it is no sheet from whose rim walls could go down: `repair` makes a solid of it")]
+    #[error(
+        "the surface has no open edge, so it is no sheet from whose rim walls could go down: `repair` makes a solid of it"
+    )]
     Closed,
     /// The sheet does not lie on one side of the base.
     #[error(

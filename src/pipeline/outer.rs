@@ -9,8 +9,8 @@ use super::assembled::Assembled;
 use super::frame::Frame;
 use super::plan::area;
 use super::{
-    BooleanError, HoleReport, LidShape, NothingEnclosed, Operand, Options, OuterReport, Outcome, Plan, Precision, SheetSide, SurfaceOptions, ThickenError,
-    ThickenOptions, TriangleSource, VoxelSize, boolean, plan, sizing, thicken,
+    BooleanError, HoleReport, LidShape, NothingEnclosed, Operand, Options, Outcome, OuterReport, Plan, Precision,
+    SheetSide, SurfaceOptions, ThickenError, ThickenOptions, TriangleSource, VoxelSize, boolean, plan, sizing, thicken,
 };
 use crate::arrange::{ArrangeError, cut};
 use crate::digits;
@@ -259,7 +259,9 @@ impl Found {
             number.iter().filter(|&&t| turned(t as usize)).map(|&t| soup.patch_of[t as usize]).collect();
         orient.flipped_patches = turned_over.len();
         orient.flipped_by_rays = number.iter().filter(|&&t| turned(t as usize)).count();
-        if options.thickness.is_none() && let Some(&first) = seen.first() {
+        if options.thickness.is_none()
+            && let Some(&first) = seen.first()
+        {
             let widest = rims(&sheets).iter().map(|rim| rim.diameter).fold(0.0, f64::max);
             let at = given.corners(soup.source[first as usize] as usize).iter().sum::<DVec3>() / 3.0;
             return Err(OuterError::Sheets { triangles: seen.len(), at, widest });

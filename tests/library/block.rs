@@ -93,7 +93,7 @@ fn terrain_becomes_a_block_of_known_volume_with_two_triangles_a_wall() {
 #[test]
 fn holes_of_the_sheet_go_through_the_block_and_islands_stand_in_them() {
     let hole = |x: u32, y: u32| (2..7).contains(&x) && (2..7).contains(&y) && !(x == 4 && y == 4);
-    let sheet = field([12, 12], |x, y| !hole(x, y) && !(x == 9 && y == 3), hills);
+    let sheet = field([12, 12], |x, y| !(hole(x, y) || x == 9 && y == 3), hills);
     let outcome = made(&sheet, Base::Plane { axis: Axis::Z, at: 0.0 });
     has_all_of(&outcome, &sheet);
     let found = outcome.solid.validity();
@@ -170,7 +170,8 @@ fn several_sheets_and_closed_bodies_make_one_solid() {
 fn what_lies_over_itself_is_cut_exactly() {
     let steps = 90;
     let vertex = |n: u32| {
-        let (angle, radius) = (f64::from(n / 2) * 3.0 * std::f64::consts::PI / f64::from(steps), f64::from(n % 2) + 1.0);
+        let (angle, radius) =
+            (f64::from(n / 2) * 3.0 * std::f64::consts::PI / f64::from(steps), f64::from(n % 2) + 1.0);
         // Wider at its end, so that its rims cross those below.
         let radius = if n % 2 == 1 { radius + 0.06 * angle } else { radius - 0.03 * angle };
         DVec3::new(radius * angle.cos(), radius * angle.sin(), 1.0 + 0.5 * angle)

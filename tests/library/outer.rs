@@ -4,10 +4,8 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 use meshwright::mesh::TriMesh;
-use meshwright::pipeline::{
-    BooleanError, Options, Outcome, OuterError, OuterOptions, VoxelSize, outer, plan_outer,
-};
 use meshwright::outer::ReachError;
+use meshwright::pipeline::{BooleanError, Options, Outcome, OuterError, OuterOptions, VoxelSize, outer, plan_outer};
 use meshwright::progress::Progress;
 
 use crate::common::proofs::state;
@@ -125,7 +123,8 @@ fn double(whole: &TriMesh, gap: f64, pinholes: usize, skin: Skin) -> Double {
         vertices.iter().for_each(|&v| taken[v as usize] = true);
         list.iter().for_each(|&t| missing[t] = true);
         let at = |v: u32| whole.positions[v as usize];
-        let width = vertices.iter().flat_map(|&a| vertices.iter().map(move |&b| at(a).distance(at(b)))).fold(0.0, f64::max);
+        let width =
+            vertices.iter().flat_map(|&a| vertices.iter().map(move |&b| at(a).distance(at(b)))).fold(0.0, f64::max);
         widest = widest.max(width);
         room += width.powi(3);
         made += 1;
@@ -162,7 +161,9 @@ fn bodies() -> Vec<(String, TriMesh, f64)> {
     for k in 0..6 {
         all.push((format!("ball {k}"), ball(4, bumps(f64::from(k))), 0.05));
     }
-    for (k, size) in [[2.0, 2.0, 2.0], [2.0, 1.4, 1.0], [1.0, 1.0, 2.0], [2.0, 2.0, 0.8], [1.5, 1.2, 1.1]].iter().enumerate() {
+    for (k, size) in
+        [[2.0, 2.0, 2.0], [2.0, 1.4, 1.0], [1.0, 1.0, 2.0], [2.0, 2.0, 0.8], [1.5, 1.2, 1.1]].iter().enumerate()
+    {
         let whole = finer(&cuboid(DVec3::ZERO, DVec3::from_array(*size)), 4);
         all.push((format!("box {k}"), turned(whole, 0.3 * k as f64), 0.05));
     }
@@ -230,7 +231,8 @@ fn what_is_right_stays_as_it_is() {
         let at = |z: f64| profile.iter().map(move |[x, y]| DVec3::new(*x, *y, z));
         let side = |k: u32| [[k, (k + 1) % 8, (k + 1) % 8 + 8], [k, (k + 1) % 8 + 8, k + 8]];
         let cap = [[0, 1, 5], [1, 4, 5], [1, 2, 4], [2, 3, 4], [0, 5, 6], [0, 6, 7]];
-        let triangles = (0..8).flat_map(side).chain(cap.map(|[a, b, c]| [a, c, b])).chain(cap.map(|t| t.map(|v| v + 8)));
+        let triangles =
+            (0..8).flat_map(side).chain(cap.map(|[a, b, c]| [a, c, b])).chain(cap.map(|t| t.map(|v| v + 8)));
         TriMesh { triangles: triangles.collect(), positions: at(0.0).chain(at(2.0)).collect() }
     };
     let mut apart = cuboid(DVec3::ZERO, DVec3::ONE);
@@ -263,7 +265,10 @@ fn buried_parts_voids_and_faces_within_unions_go() {
     let mut crossing = room.clone();
     crossing.append(&cuboid(DVec3::splat(2.0), DVec3::splat(6.0)));
     let outcome = seen(&crossing, 0.5);
-    assert!((volume(&outcome.solid) - 120.0).abs() < 1e-9 && outcome.report.outer.as_ref().is_some_and(|outer| outer.cut > 0));
+    assert!(
+        (volume(&outcome.solid) - 120.0).abs() < 1e-9
+            && outcome.report.outer.as_ref().is_some_and(|outer| outer.cut > 0)
+    );
     let mut sharing = room.clone();
     sharing.append(&cuboid(DVec3::new(4.0, 1.0, 1.0), DVec3::new(5.0, 2.0, 2.0)));
     assert!((volume(&seen(&sharing, 0.5).solid) - 65.0).abs() < 1e-9);
@@ -334,7 +339,10 @@ fn sheets_are_refused_or_made_thick() {
     let alone = flag.submesh(&[12, 13]).mesh;
     let plate = outer(&alone, &thick, &Progress::none()).expect("a solid");
     assert!(state(&plate.solid, true).is_valid());
-    let cup = TriMesh { triangles: cuboid(DVec3::ZERO, DVec3::ONE).triangles[2..].to_vec(), ..cuboid(DVec3::ZERO, DVec3::ONE) };
+    let cup = TriMesh {
+        triangles: cuboid(DVec3::ZERO, DVec3::ONE).triangles[2..].to_vec(),
+        ..cuboid(DVec3::ZERO, DVec3::ONE)
+    };
     let OuterError::Sheets { triangles, widest, .. } = refused(&cup, 0.2) else { panic!("it goes in") };
     assert_eq!((triangles, widest), (10, 2f64.sqrt()));
     assert_eq!(seen(&cup, 1.6).solid.triangles.len(), 12);
