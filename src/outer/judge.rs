@@ -21,7 +21,7 @@ pub enum Part {
 pub struct Parts {
     /// Of each triangle.
     pub of: Vec<Part>,
-    /// For each patch whether its outside is on the back of its triangles.
+    /// For each triangle whether its outside is on its back.
     pub turned: Vec<bool>,
 }
 
@@ -43,22 +43,28 @@ pub fn judge(mesh: &TriMesh, patch_of: &[PatchId], patches: usize, sights: &[Sig
             shown[patch][usize::from(sides[1])] += area;
         }
     }
-    let turned: Vec<bool> = shown.iter().map(|[front, back]| back > front).collect();
-    let part = |(t, sight): (usize, &Sights)| {
+    let mut turned: Vec<bool> =
+        patch_of.iter().map(|patch| shown[patch.index()]).map(|[front, back]| back > front).collect();
+    let mut part = |(t, sight): (usize, &Sights)| {
         let patch = patch_of[t].index();
         if !is_seen[patch] {
             return Some(Part::Inner);
         }
         let Sights { front, back } = *sight;
-        let (front, back) = if turned[patch] { (back, front) } else { (front, back) };
+        let (front, back) = if turned[t] { (back, front) } else { (front, back) };
         match (front, back) {
+            // The patch does not agree about its sides, but here there is no doubt.
+            (Sight::Chamber, Sight::Outside) => {
+                turned[t] = !turned[t];
+                Some(Part::Outer)
+            }
             (_, Sight::Outside) => Some(Part::Sheet),
             (Sight::Outside, _) => Some(Part::Outer),
             (Sight::Chamber, _) => Some(Part::Inner),
             (Sight::Nowhere, _) => None,
         }
     };
-    let mut of: Vec<Option<Part>> = sights.iter().enumerate().map(part).collect();
+    let mut of: Vec<Option<Part>> = sights.iter().enumerate().map(&mut part).collect();
     settle(&mut of, mesh, patch_of);
     Parts { of: of.into_iter().map(|part| part.unwrap_or(Part::Inner)).collect(), turned }
 }

@@ -7,14 +7,21 @@ use super::{Reach, Sight};
 use crate::mesh::{ClosestTree, Plane, TriMesh};
 use crate::progress::{Progress, Stopped};
 
-/// A ball touches a point where it goes into the surface elsewhere by at most this part of its radius: the dents of a scan are not to hide anything.
-const TOUCHING: f64 = 0.25;
+/// A ball touches a point where it goes into the surface elsewhere by at most this part of its radius. A larger part would let it look through pinholes at what is close behind; with
+/// a smaller one it would not touch what is round inwards, between edges of a few degrees.
+const TOUCHING: f64 = 0.05;
+
+/// The voxels around the centre are looked at so far above it, voxels: on a flat surface those on the far side are free then, however the lattice lies.
+const ABOVE: f64 = 0.5;
 
 /// A surface that is nearer to a point on the way to it than this part of what is left of the way lies in between.
 const BETWEEN: f64 = 1.0 / 16.0;
 
 /// What is left of the way when it has arrived, as a part of the radius.
 const ARRIVED: f64 = 1e-6;
+
+/// Triangles that are lower than this part of their longest side have no sides to speak of: their corners are rounded.
+const SLIVER: f64 = 1e-7;
 
 /// Places along the side of a triangle, at most.
 const MOST_PLACES: usize = 16;
@@ -39,6 +46,9 @@ pub fn sights(mesh: &TriMesh, reach: &Reach, progress: &Progress) -> Result<Vec<
             progress.check()?;
         }
         let corners = mesh.corners(t);
+        if is_sliver(corners) {
+            return Ok(Sights { front: Sight::Nowhere, back: Sight::Nowhere });
+        }
         let normal = Plane::through(corners).normal;
         let places = places(corners, reach.radius);
         let best = |way: DVec3| {
@@ -66,7 +76,7 @@ impl Scene<'_> {
     fn sight(&self, p: DVec3, way: DVec3) -> Sight {
         let radius = self.reach.radius;
         let lattice = &self.reach.lattice;
-        let low = lattice.to_lattice(p + way * radius).floor().as_ivec3();
+        let low = (lattice.to_lattice(p + way * radius) + way * ABOVE).floor().as_ivec3();
         let near = (0..8).map(|n| self.reach.at(low + IVec3::new(n & 1, n >> 1 & 1, n >> 2)));
         let most = near.fold(Sight::Nowhere, Sight::max);
         if most > Sight::Nowhere && self.has_room(p, way) { most } else { Sight::Nowhere }
@@ -88,6 +98,11 @@ impl Scene<'_> {
         }
         true
     }
+}
+
+fn is_sliver([a, b, c]: [DVec3; 3]) -> bool {
+    let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
+    (b - a).cross(c - a).length() <= SLIVER * longest
 }
 
 /// Points within a triangle, about `spacing` apart.

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use glam::DVec3;
+use rayon::prelude::*;
 use rustc_hash::FxHashSet;
 
 use super::assembled::Assembled;
@@ -14,13 +15,17 @@ use super::{
 };
 use crate::arrange::{ArrangeError, cut};
 use crate::digits;
-use crate::fill::{FillOptions, Style, Surroundings, lid, rims};
+use crate::fill::{FillOptions, Lid, Style, Surroundings, lid, rims};
 use crate::ldi::Expression;
 use crate::mesh::TriMesh;
+use crate::mesh::edges::Union;
 use crate::orient::{OrientMode, OrientReport, PatchId};
 use crate::outer::{Part, Parts, Reach, ReachError, judge, sights};
 use crate::progress::{Progress, Stage, Stopped};
 use crate::survey::{Soup, SoupError};
+
+/// A rim whose diameter is more than this part of the diagonal of what it bounds is where a body was cut off, and is closed flat by [`Style::Auto`].
+const WIDE: f64 = 0.25;
 
 /// Voxels to the thickness of a sheet, at least.
 const ACROSS: f64 = 5.0;
@@ -49,7 +54,7 @@ pub enum OuterError {
         triangles: usize,
         /// One of them.
         at: DVec3,
-        /// The diameter of the widest rim of these triangles.
+        /// The diameter of the widest rim beside them; 0 where they have none.
         widest: f64,
     },
     /// The triangles cannot be cut where they cross.
@@ -67,7 +72,7 @@ fn sheets(triangles: usize, at: DVec3, widest: f64) -> String {
     let at = at.to_array().map(digits::number).join(" ");
     format!(
         "the ball sees {} triangle{} from both sides, one at {at}: sheets that enclose nothing, or a surface with a hole that the ball \
-         passes; their widest rim is {} across",
+         passes; the widest rim beside is {} across",
         digits::count(triangles),
         if triangles == 1 { "" } else { "s" },
         digits::number(widest)
@@ -100,8 +105,16 @@ pub fn outer<'a>(
     let (given, solid) = (operand.mesh, &options.solid);
     check(given)?;
     let frame = Frame::of(&[given], &solid.surface());
-    let mut found = Found::new(&frame.local(given), options, progress)?;
-    let (mut assembled, lids) = found.closed(solid);
+    let found = Found::new(&frame.local(given), options, progress);
+    let mut found = found.map_err(|mut error| {
+        if let OuterError::Sheets { at, .. } = &mut error {
+            let mut place = at.to_array();
+            frame.place(&mut place);
+            *at = DVec3::from_array(place);
+        }
+        error
+    })?;
+    let (mut assembled, lids) = found.closed(solid, progress)?;
     frame.mesh(&mut assembled.mesh);
     frame.mesh(&mut found.sheets);
     let negative = operand.negative.map(Operand::from);
@@ -141,6 +154,14 @@ pub fn outer<'a>(
     outcome.report.orient = vec![found.orient];
     outcome.report.outer = Some(report);
     Ok(outcome)
+}
+
+/// The diameter of the widest rim of a soup that has an edge of any of these triangles.
+fn widest_rim(soup: &Soup, triangles: &[u32]) -> f64 {
+    let mut is_there = vec![false; soup.mesh.positions.len()];
+    triangles.iter().flat_map(|&t| soup.mesh.triangles[t as usize]).for_each(|v| is_there[v as usize] = true);
+    let beside = rims(&soup.mesh).into_iter().filter(|rim| rim.vertices.iter().any(|&v| is_there[v as usize]));
+    beside.map(|rim| rim.diameter).fold(0.0, f64::max)
 }
 
 /// What [`outer`] would cost.
@@ -198,6 +219,17 @@ fn thickened(
     })
 }
 
+/// For each vertex the diagonal of the box around all that hangs together with it.
+fn sizes(mesh: &TriMesh) -> Vec<f64> {
+    let mut parts = Union::of_triangles(mesh.positions.len(), mesh.triangles.iter().copied());
+    let of: Vec<usize> = (0..mesh.positions.len() as u32).map(|v| parts.root(v) as usize).collect();
+    let mut ends = vec![[DVec3::MAX, DVec3::MIN]; mesh.positions.len()];
+    for (&p, &part) in mesh.positions.iter().zip(&of) {
+        ends[part] = [ends[part][0].min(p), ends[part][1].max(p)];
+    }
+    of.into_iter().map(|part| ends[part][0].distance(ends[part][1])).collect()
+}
+
 /// What the ball has found.
 struct Found {
     /// The outer triangles, which face outwards.
@@ -234,15 +266,14 @@ impl Found {
             ArrangeError::Stopped(stopped) => stopped.into(),
             error => OuterError::Cut(error),
         })?;
-        if pieces.cut > 0 {
-            let whole = std::mem::replace(&mut soup, Soup::of(&[&pieces.mesh], OrientMode::Auto, progress)?);
-            soup.source.iter_mut().for_each(|t| *t = whole.source[pieces.sources[*t as usize] as usize]);
-        }
+        // Also where nothing is cut, what rounding parted has the same vertices now.
+        let whole = std::mem::replace(&mut soup, Soup::of(&[&pieces.mesh], OrientMode::Auto, progress)?);
+        soup.source.iter_mut().for_each(|t| *t = whole.source[pieces.sources[*t as usize] as usize]);
         progress.stage(Stage::Distance)?;
         let reach = Reach::of(&soup.mesh, options.ball, options.solid.max_memory, progress)?;
         let sights = sights(&soup.mesh, &reach, progress)?;
         let parts = judge(&soup.mesh, &soup.patch_of, soup.patch_count, &sights);
-        let turned = |t: usize| parts.turned[soup.patch_of[t].index()];
+        let turned = |t: usize| parts.turned[t];
         let of = |part: Part| -> Vec<u32> {
             (0..soup.mesh.triangles.len() as u32).filter(|&t| parts.of[t as usize] == part).collect()
         };
@@ -262,7 +293,7 @@ impl Found {
         if options.thickness.is_none()
             && let Some(&first) = seen.first()
         {
-            let widest = rims(&sheets).iter().map(|rim| rim.diameter).fold(0.0, f64::max);
+            let widest = widest_rim(&soup, &seen);
             let at = given.corners(soup.source[first as usize] as usize).iter().sum::<DVec3>() / 3.0;
             return Err(OuterError::Sheets { triangles: seen.len(), at, widest });
         }
@@ -271,28 +302,35 @@ impl Found {
     }
 
     /// The outer triangles with a lid over each rim that has one.
-    fn closed(&self, options: &Options) -> (Assembled, Vec<Closing>) {
+    fn closed(&self, options: &Options, progress: &Progress) -> Result<(Assembled, Vec<Closing>), Stopped> {
         let known = self.outer.positions.len();
         let source = |&t: &u32| TriangleSource::Operand { operand: 0, triangle: self.soup.source[t as usize] };
         let own = self.number.iter().map(source).collect();
         let mut assembled = Assembled { mesh: self.outer.clone(), own, holes: 0 };
         let mut lids = Vec::new();
         let around = Surroundings::new(&self.outer);
-        let asked = FillOptions { style: options.fill, ..FillOptions::default() };
-        for rim in rims(&self.outer) {
-            // A rim without a lid is left to the repair.
-            let Ok(lid) = lid(&around, &rim, &asked) else { continue };
+        let rims = rims(&self.outer);
+        let sizes = sizes(&self.outer);
+        let made = rims.par_iter().map(|rim| {
+            let is_wide = rim.diameter > WIDE * sizes[rim.vertices[0] as usize];
+            let style = if is_wide && options.fill == Style::Auto { Style::Flat } else { options.fill };
+            progress.check()?;
+            Ok(lid(&around, rim, &FillOptions { style, ..FillOptions::default() }).ok())
+        });
+        let made: Vec<Option<Lid>> = made.collect::<Result<_, Stopped>>()?;
+        // A rim without a lid is left to the repair.
+        for (rim, lid) in rims.iter().zip(made).filter_map(|(rim, lid)| Some((rim, lid?))) {
             let new = (assembled.mesh.positions.len() - known) as u32;
             let number = |v: u32| if (v as usize) < known { v } else { v + new };
             let first = assembled.mesh.triangles.len();
             assembled.mesh.triangles.extend(lid.triangles.iter().map(|corners| corners.map(number)));
             assembled.mesh.positions.extend_from_slice(&lid.positions);
             let shape = if lid.style == Style::Smooth { LidShape::Smooth } else { LidShape::Flat };
-            let hole = HoleReport::of(lids.len() + 1, &rim, Ok((&lid, shape)));
+            let hole = HoleReport::of(lids.len() + 1, rim, Ok((&lid, shape)));
             lids.push(Closing { hole, triangles: first..assembled.mesh.triangles.len() });
         }
         assembled.own.resize(assembled.mesh.triangles.len(), TriangleSource::Closed);
-        (assembled, lids)
+        Ok((assembled, lids))
     }
 
     /// What became of all triangles. `left`: for each triangle of the mesh that was put together whether it is there.

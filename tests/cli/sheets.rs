@@ -72,7 +72,7 @@ fn sheets_need_a_thickness() {
         run_in(&folder, &format!("{line} -o OUT/x.stl")).exits(status).says(words);
     };
     refused("repair testdata/open_sheet.obj --outer", 3, &["from both sides", "--thickness LEN"]);
-    refused("repair testdata/open_cube.off --outer", 3, &["hole that the ball passes", "widest rim"]);
+    refused("repair testdata/open_cube.off --outer", 3, &["hole that the ball passes", "the widest rim beside"]);
     refused("repair testdata/open_sheet.obj --thickness 1", 2, &["--outer"]);
     refused("repair testdata/torus.ply --outer 1e-6%", 2, &["cannot be rolled", "at least"]);
     refused("repair testdata/torus.ply --outer 0", 2, &["above zero"]);

@@ -313,7 +313,7 @@ fn pinholes_are_listed_by_number_and_can_be_left_open() {
     let lids: usize = outcome.report.holes.iter().map(|hole| hole.triangles).sum();
     assert_eq!(lids, outcome.solid.triangles.len() - double.outer.triangles.len());
     let second = outcome.report.holes[1].clone();
-    let opened = outcome.open(&[2]).expect("a lid");
+    let opened = outcome.clone().open(&[2]).expect("a lid");
     assert_eq!(opened.mesh.triangles.len(), outcome.solid.triangles.len() - second.triangles);
     assert_eq!(corners(&outcome.open_all().mesh), corners(&double.outer));
 }
