@@ -46,6 +46,7 @@
 mod digits;
 pub mod progress;
 pub mod mesh;
+pub mod zip;
 pub mod fill;
 pub mod lattice;
 pub mod io;

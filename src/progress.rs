@@ -30,6 +30,8 @@ pub enum Stage {
     Orient,
     /// Closed surfaces that touch nothing are set apart.
     Shells,
+    /// Cracks are closed by moving vertices a little.
+    Zip,
     /// Holes are closed from their rims.
     Fill,
     /// What crosses is cut, exactly.

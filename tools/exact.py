@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The exact way against manifold3d, file to file and by itself: the tables of docs/benchmarks.md and docs/accuracy.md.
+"""The exact way against manifold3d, and trueform where it is installed, file to file and by itself: the tables of docs/benchmarks.md and docs/accuracy.md.
 
     tools/exact.py PROGRAM [--runs 3] [--quick] [--install]
 
-Needs numpy and manifold3d; --install fetches them. Every input is made here. For each pair: seconds of the whole program, file to
-file with verification (least of the runs); seconds of its arrangement alone (stages `shells` and `arrange` of the report); seconds of manifold3d alone, from arrays to volume; peak memory
+Needs numpy and manifold3d; --install fetches them, and trueform. Every input is made here. For each pair: seconds of the whole program, file to
+file with verification (least of the runs); seconds of its arrangement alone (stages `shells` and `arrange` of the report); seconds of manifold3d alone, from arrays to volume, and of trueform, from arrays to arrays; peak memory
 of the program; and the volume against that of manifold3d. Exit status 1 if a volume is off by more than a millionth.
 """
 import argparse
@@ -123,6 +123,23 @@ def theirs(a, b, operation, runs):
     return best
 
 
+def trueform(a, b, operation, runs):
+    """Its seconds, in words; nothing where it is not there."""
+    import numpy as np
+
+    try:
+        import trueform as tf
+    except ImportError:
+        return ""
+    times = []
+    for _ in range(runs):
+        start = time.perf_counter()
+        m, n = (tf.Mesh(f.astype(np.int32), p.astype(np.float64)) for p, f in (a, b))
+        getattr(tf, f"boolean_{operation}")(m, n)
+        times.append(time.perf_counter() - start)
+    return f"{min(times):.3f}"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=Path)
@@ -131,10 +148,10 @@ def main():
     parser.add_argument("--install", action="store_true", help="fetch numpy and manifold3d first")
     args = parser.parse_args()
     if args.install:
-        subprocess.run([sys.executable, "-m", "pip", "install", "-q", "numpy", "manifold3d"], check=True)
+        subprocess.run([sys.executable, "-m", "pip", "install", "-q", "numpy", "manifold3d", "trueform"], check=True)
     program, wrong = args.program.resolve(), 0
     sizes = [16, 32, 64] if args.quick else [16, 64, 128, 256, 500]
-    print("| input | triangles | operation | program s | arrangement s | MB | manifold3d s | volume off by |\n|---|---|---|---|---|---|---|---|")
+    print("| input | triangles | operation | program s | arrangement s | MB | manifold3d s | trueform s | volume off by |\n|---|---|---|---|---|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         for n in sizes:
@@ -147,7 +164,7 @@ def main():
                 peer, wanted = theirs(a, b, operation, args.runs)
                 off = abs(volume(read(out)) / wanted - 1)
                 wrong += off > 1e-6
-                print(f"| two balls | {2 * len(a[1]):,} | {operation} | {seconds:.3f} | {inner:.3f} | {memory:.0f} | {peer:.3f} | {off:.1e} |", flush=True)
+                print(f"| two balls | {2 * len(a[1]):,} | {operation} | {seconds:.3f} | {inner:.3f} | {memory:.0f} | {peer:.3f} | {trueform(a, b, operation, args.runs)} | {off:.1e} |", flush=True)
         wrong += chain(program, folder, 10 if args.quick else 100)
     sys.exit(1 if wrong else 0)
 
@@ -172,7 +189,7 @@ def chain(program, folder, count):
         now = out
     seconds = time.perf_counter() - start
     off = abs(volume(read(now)) / wanted - 1)
-    print(f"| a plate drilled {count} times, one file after another | {len(read(now)[1]):,} | difference | {seconds:.2f} | | | | {off:.1e} |")
+    print(f"| a plate drilled {count} times, one file after another | {len(read(now)[1]):,} | difference | {seconds:.2f} | | | | | {off:.1e} |")
     wrong += off > 1e-6
     expression = f"p - ({' | '.join(f'd{n}' for n in range(count))})"
     inputs = [f"p={folder / 'plate.obj'}"] + [f"d{n}={folder / f'drill{n}.obj'}" for n in range(count)]
@@ -181,7 +198,7 @@ def chain(program, folder, count):
     subprocess.run([program, "csg", expression, *inputs, "-o", out, "-q"], check=True)
     seconds = time.perf_counter() - start
     off = abs(volume(read(out)) / wanted - 1)
-    print(f"| the same as one csg | {len(read(out)[1]):,} | csg | {seconds:.2f} | | | | {off:.1e} |")
+    print(f"| the same as one csg | {len(read(out)[1]):,} | csg | {seconds:.2f} | | | | | {off:.1e} |")
     return wrong + (off > 1e-6)
 
 

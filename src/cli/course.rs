@@ -13,6 +13,7 @@ pub fn in_words(stage: Stage) -> &'static str {
         Stage::Examine => "looking for defects",
         Stage::Orient => "finding the outer sides",
         Stage::Shells => "taking the bodies apart",
+        Stage::Zip => "closing cracks",
         Stage::Fill => "closing holes",
         Stage::Arrange => "cutting what crosses",
         Stage::Ldi => "casting rays through the model",

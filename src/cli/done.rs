@@ -18,6 +18,19 @@ pub fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
     add(sum(|o| o.both_sided), "triangle", "present in both directions counted once");
     add(sum(|o| o.flipped_in_patches), "triangle", "turned over to agree with the neighbours");
     add(sum(|o| o.flipped_patches), "patch", "turned over as a whole");
+    if let Some(zip) = &pipeline.zip {
+        let closed = zip.open_before.saturating_sub(zip.open_after);
+        let how = match (zip.inserted, zip.merged) {
+            (inserted, 0) => format!("{} put on edges beside them", words::plural(inserted, "vertex")),
+            (0, _) => format!("vertices moved by up to {}", words::length(zip.farthest, unit)),
+            (inserted, _) => format!(
+                "{} put on edges beside them, others moved by up to {}",
+                words::plural(inserted, "vertex"),
+                words::length(zip.farthest, unit)
+            ),
+        };
+        add(closed, "open edge", &format!("at cracks closed: {how}"));
+    }
     let lids = pipeline.holes.iter().map(|hole| hole.triangles).sum();
     let lidded = pipeline.holes.iter().filter(|hole| hole.has_lid()).count();
     add(lidded, "hole", &format!("closed with {}", words::plural(lids, "triangle")));

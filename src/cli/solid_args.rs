@@ -36,6 +36,9 @@ pub struct SolidArgs {
     /// Which part of space is inside where closed surfaces lie in each other or overlap
     #[arg(long, value_enum, default_value_t = InsideChoice::Positive)]
     pub inside: InsideChoice,
+    /// How far vertices at cracks may move so that these close before anything is called a hole, or `off` [default: 0.001%]
+    #[arg(long, value_name = "LEN|off")]
+    pub tolerance: Option<Simplify>,
     /// How holes are closed that a lid over their rim alone closes; others are closed from voxels
     #[arg(long, value_enum, default_value_t = FillChoice::Auto)]
     pub fill: FillChoice,

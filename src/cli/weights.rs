@@ -5,11 +5,12 @@ use crate::pipeline::Work;
 use crate::progress::Stage;
 
 /// The stages of a repair and about what share of its time each takes, percent (the Stanford bunny at 256, file to file).
-const SOLID: [(Stage, f64); 15] = [
+const SOLID: [(Stage, f64); 16] = [
     (Stage::Read, 2.0),
     (Stage::Examine, 4.0),
     (Stage::Orient, 2.0),
     (Stage::Shells, 2.0),
+    (Stage::Zip, 0.5),
     (Stage::Fill, 2.0),
     (Stage::Arrange, 4.0),
     (Stage::Ldi, 6.0),

@@ -9,6 +9,7 @@ use crate::mesh::weld::{has_repeated_index, welded_triangles};
 use crate::mesh::{TriMesh, intersecting_triangles};
 use crate::progress::Progress;
 use crate::survey::Soup;
+use crate::zip::{Zipped, zip};
 
 /// Which way a run will go.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,6 +46,9 @@ impl Ahead {
             // There is no other way.
             Method::Exact => Way::Exact,
             Method::Auto => match unbalanced(operands, &apart) {
+                open if !open.is_empty() && options.tolerance != Some(0.0) => {
+                    return Self::after_cracks(operands, options);
+                }
                 open if open.is_empty() || apart.open_balances() => Way::Exact,
                 open if operands.len() > 1 => Way::Sealed(open),
                 _ if planned(&rest, options, &progress)?.is_whole() => Way::Exact,
@@ -57,6 +61,14 @@ impl Ahead {
             touching => touching,
         };
         Ok(Self { rest: rest.mesh, touching, way })
+    }
+
+    /// The same of operands whose cracks are closed first.
+    fn after_cracks(operands: &[&TriMesh], options: &Options) -> Result<Self, BooleanError> {
+        let zipped = operands.iter().map(|mesh| zip(mesh, options.tolerance, &Progress::none()));
+        let zipped: Vec<Option<Zipped>> = zipped.collect::<Result<_, _>>()?;
+        let meshes = zipped.iter().zip(operands).map(|(zipped, mesh)| zipped.as_ref().map_or(*mesh, |z| &z.mesh));
+        Self::of(&meshes.collect::<Vec<_>>(), &Options { tolerance: Some(0.0), ..*options })
     }
 }
 

@@ -120,6 +120,10 @@ impl Task<'_> {
         }
         let mut holes = Plan::default();
         if let Exact::Open { closed, crosses } = exact {
+            if let Some(mut draft) = self.zipped(&rest, &mut stages)? {
+                draft.report.stages = stages.finish();
+                return Ok(draft);
+            }
             if meshes.len() > 1 {
                 if let Some(draft) = self.sealed(&closed, &rest, &mut stages)? {
                     return Ok(account::finished(draft, &apart, stages));

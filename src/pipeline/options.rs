@@ -40,6 +40,9 @@ pub struct Options {
     pub orient: OrientMode,
     /// Which winding numbers of an operand are inside.
     pub inside: Inside,
+    /// How far vertices at cracks may move so that these close before anything is called a hole, model units; `None`: a [small share](crate::zip::USUAL) of
+    /// the diagonal; 0: not at all. Closed operands are left alone.
+    pub tolerance: Option<f64>,
     /// How holes are closed that a lid over their rim alone closes; others get the level ½ of the winding number, from voxels.
     pub fill: Style,
     /// Voting rule.
@@ -116,6 +119,7 @@ impl Options {
             method: Method::default(),
             orient: OrientMode::Auto,
             inside: Inside::default(),
+            tolerance: None,
             fill: Style::default(),
             vote: VoteRule::default(),
             robust: None,

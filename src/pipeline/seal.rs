@@ -8,38 +8,74 @@ use super::{BooleanError, Draft, Method, Options, Precision, Report, TriangleSou
 use crate::arrange::{ArrangeError, cut};
 use crate::lattice::Lattice;
 use crate::ldi::Expression;
+use crate::mesh::TriMesh;
 use crate::progress::Stage;
 use crate::survey::Soup;
+use crate::zip::{ZipReport, Zipped, zip};
 
 impl Task<'_> {
     /// The repair of an operand with holes that was cut first where it crosses itself: then its crossing curves are edges, and what lies on either
     /// side of them is judged by itself. `given`: the operand as it was cleaned. `None` where nothing crosses, or where nothing is enclosed then.
     pub(super) fn cut_first(&self, given: &Soup, stages: &mut Stages<'_>) -> Result<Option<Draft>, BooleanError> {
-        let Self { meshes, classes, expression, options, h, progress } = *self;
+        let Self { meshes, options, progress, .. } = *self;
         let single = options.precision == Precision::Single;
         let pieces = match cut(meshes[0], single, progress) {
             Ok(pieces) if pieces.cut > 0 => pieces,
             Err(ArrangeError::Stopped(stopped)) => return Err(stopped.into()),
             _ => return Ok(None),
         };
-        let class = |&t: &u32| classes[0][t as usize];
-        let own = if classes[0].is_empty() { Vec::new() } else { pieces.sources.iter().map(class).collect() };
-        let task = Task {
-            meshes: &[&pieces.mesh],
-            classes: &[own],
-            expression,
-            options: &Options { method: Method::Voxel, ..*options },
-            h,
-            progress,
-        };
-        let mut draft = match task.draft() {
+        let inner = Options { method: Method::Voxel, ..*options };
+        let mut draft = match self.of_pieces(&[(&pieces.mesh, &pieces.sources)], &inner, given) {
             Ok(draft) => draft,
             Err(BooleanError::Nothing(_)) => return Ok(None),
             Err(error) => return Err(error),
         };
+        stages.took(&draft.report.stages);
+        draft.report.cut = pieces.cut;
+        Ok(Some(draft))
+    }
+
+    /// The boolean of operands whose cracks were closed first; `None` where none has any that closes. `given`: the operands as they were cleaned.
+    pub(super) fn zipped(&self, given: &Soup, stages: &mut Stages<'_>) -> Result<Option<Draft>, BooleanError> {
+        let Self { meshes, options, progress, .. } = *self;
+        if options.tolerance == Some(0.0) {
+            return Ok(None);
+        }
+        stages.begin(Stage::Zip)?;
+        let zipped = meshes.iter().map(|mesh| zip(mesh, options.tolerance, progress));
+        let zipped: Vec<Option<Zipped>> = zipped.collect::<Result<_, _>>()?;
+        let Some(report) = zipped.iter().flatten().map(|one| one.report).reduce(ZipReport::with) else {
+            return Ok(None);
+        };
+        let all: Vec<Vec<u32>> = meshes.iter().map(|mesh| (0..mesh.triangles.len() as u32).collect()).collect();
+        let pieces = zipped.iter().zip(meshes).zip(&all).map(|((zipped, mesh), all)| match zipped {
+            Some(zipped) => (&zipped.mesh, &zipped.sources),
+            None => (*mesh, all),
+        });
+        let pieces: Vec<(&TriMesh, &Vec<u32>)> = pieces.collect();
+        let mut draft = self.of_pieces(&pieces, &Options { tolerance: Some(0.0), ..*options }, given)?;
+        draft.report.zip = Some(report);
+        stages.took(&draft.report.stages);
+        Ok(Some(draft))
+    }
+
+    /// The same boolean of pieces of the operands' triangles, each with the number of its triangle. `given`: the operands as they were cleaned.
+    fn of_pieces(
+        &self,
+        pieces: &[(&TriMesh, &Vec<u32>)],
+        options: &Options,
+        given: &Soup,
+    ) -> Result<Draft, BooleanError> {
+        let meshes: Vec<&TriMesh> = pieces.iter().map(|(mesh, _)| *mesh).collect();
+        let own = |(classes, (_, sources)): (&Vec<u32>, &(&TriMesh, &Vec<u32>))| match classes.is_empty() {
+            true => Vec::new(),
+            false => sources.iter().map(|&t| classes[t as usize]).collect(),
+        };
+        let classes: Vec<Vec<u32>> = self.classes.iter().zip(pieces).map(own).collect();
+        let mut draft = Task { meshes: &meshes, classes: &classes, options, ..*self }.draft()?;
         for source in &mut draft.sources {
-            if let TriangleSource::Operand { triangle, .. } = source {
-                *triangle = pieces.sources[*triangle as usize];
+            if let TriangleSource::Operand { operand, triangle } = source {
+                *triangle = pieces[*operand as usize].1[*triangle as usize];
             }
         }
         for (own, given) in draft.report.orient.iter_mut().zip(&given.reports) {
@@ -48,9 +84,7 @@ impl Task<'_> {
             own.duplicates_dropped = given.duplicates_dropped;
             own.both_sided = given.both_sided;
         }
-        stages.took(&draft.report.stages);
-        draft.report.cut = pieces.cut;
-        Ok(Some(draft))
+        Ok(draft)
     }
 
     /// The exact boolean of operands of which some have holes: those are repaired by themselves, as they would be alone; `None` where one

@@ -206,3 +206,39 @@ fn holes_are_listed_before_a_repair_and_may_be_left_open() {
     assert_eq!((outcome.report.triangles.made_up, outcome.report.closed_triangles), (0, 0));
     assert!(outcome.report.holes.iter().all(|hole| hole.closed_by == HoleClosing::LeftOpen));
 }
+
+/// Every triangle by itself, with corners that rounding has moved by a millionth: all of it is cracks.
+#[test]
+fn cracks_of_rounding_close_and_larger_ones_do_when_that_is_asked_for() {
+    let whole = cuboid(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0));
+    let torn = |by: f64| {
+        let number = |k: usize| ((k as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11) as f64 / (1u64 << 53) as f64;
+        let corners = whole.triangles.iter().flatten().enumerate();
+        let moved = |(n, &v): (usize, &u32)| {
+            whole.positions[v as usize] + DVec3::new(number(3 * n), number(3 * n + 1), number(3 * n + 2)) * by
+        };
+        let triangles = (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        TriMesh { positions: corners.map(moved).collect(), triangles }
+    };
+    for (by, tolerance) in [(1e-6, None), (0.01, Some(0.02))] {
+        let mesh = torn(by);
+        let outcome = repaired(&mesh, &Options { tolerance, ..options(Style::Auto) });
+        assert_eq!(outcome.solid.triangles.len(), 12);
+        assert!(!outcome.report.lattice && (volume(&outcome.solid) - 6.0).abs() < 22.0 * by);
+        let zip = outcome.report.zip.expect("cracks");
+        assert_eq!((zip.open_before, zip.open_after), (36, 0));
+        let sources: Vec<u32> = outcome
+            .sources
+            .iter()
+            .map(|source| match *source {
+                TriangleSource::Operand { triangle, .. } => triangle,
+                _ => panic!("made up"),
+            })
+            .collect();
+        let mut sorted = sources.clone();
+        sorted.sort_unstable();
+        assert_eq!(sorted, (0..12).collect::<Vec<u32>>());
+    }
+    let outcome = repaired(&torn(0.01), &options(Style::Auto));
+    assert!(outcome.report.zip.is_none() && outcome.report.lattice);
+}

@@ -4,6 +4,7 @@ mod judge;
 mod maker;
 mod open;
 mod patches;
+mod refuse;
 
 use rayon::prelude::*;
 
@@ -58,9 +59,10 @@ pub(super) fn planned(soup: &Soup, options: &Options, progress: &Progress) -> Re
     let maker = Maker { around: &around, patches: &patches, judge: &judge, style: options.fill };
     let first = rims.par_iter().map(|rim| maker.lid(rim, 0, progress));
     let mut plan = Plan { lids: first.collect::<Result<_, _>>()?, rims };
-    let refused = patches.refused(&soup.mesh, &plan, &judge);
+    let each: Vec<_> = plan.rims.iter().zip(&plan.lids).collect();
+    let refused = refuse::refused(&patches, &soup.mesh, &each, judge.sign);
     for (rim, lid) in plan.rims.iter().zip(&mut plan.lids) {
-        if let Some(why) = refused.of(rim, &patches) {
+        if let Some(why) = refused[patches.beside(rim)] {
             *lid = Err(why);
         }
     }

@@ -3,6 +3,7 @@
 use super::{Dropped, LdiReport, Report, StandingReport, ThinReport, TopologyReport};
 use crate::fit::FitReport;
 use crate::vote::VoteReport;
+use crate::zip::ZipReport;
 
 impl Report {
     /// This and the report of another operand, but for what was done to either. Sizes of lattices are those of this one.
@@ -15,6 +16,7 @@ impl Report {
         self.thin = self.thin.with(other.thin);
         self.fit = both(self.fit, other.fit, with_fit);
         self.crumbs = Dropped::and(self.crumbs, other.crumbs);
+        self.zip = both(self.zip, other.zip, ZipReport::with);
         self.cut += other.cut;
         self.holes.extend(other.holes);
         self.closed_triangles += other.closed_triangles;

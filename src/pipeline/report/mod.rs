@@ -28,6 +28,7 @@ use crate::ldi::Inside;
 use crate::orient::OrientReport;
 use crate::progress::Stage;
 use crate::vote::VoteReport;
+use crate::zip::ZipReport;
 
 /// The account of one run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -47,6 +48,8 @@ pub struct Report {
     pub exact: Option<ArrangeReport>,
     /// Triangles of operands with holes that were cut where they cross each other, before rays were cast.
     pub cut: usize,
+    /// What was done to close cracks of operands with open edges before anything was called a hole; `None` where none could be closed.
+    pub zip: Option<ZipReport>,
     /// The holes of each operand, the longest first, and what closes them; none are listed where all surface is made from voxels as is asked for.
     pub holes: Vec<HoleReport>,
     /// Bodies, voids and tunnels before and after; `None` where an operation changes them.
