@@ -97,10 +97,10 @@ fn drilled(seed: u64) -> Vec<TriMesh> {
 fn a_larger_tolerance_gives_no_more_triangles() {
     for seed in 0..2 {
         let meshes = drilled(seed);
-        let whole = made(&meshes, &without(0, 6), &rebuilt(80, 0.0)).0;
+        let whole = made(&meshes, &without(0, 6), &rebuilt(60, 0.0)).0;
         let mut fewest = usize::MAX;
         for tolerance in [0.002, 0.02, 0.2] {
-            let (simple, _) = made(&meshes, &without(0, 6), &rebuilt(80, tolerance));
+            let (simple, _) = made(&meshes, &without(0, 6), &rebuilt(60, tolerance));
             let h = simple.lattice.h;
             let off = farthest(&whole.solid, &simple.solid).max(farthest(&simple.solid, &whole.solid)) / h;
             // Places that are given up are a voxel rounder, in the one or in the other.
