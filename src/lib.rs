@@ -64,6 +64,7 @@ pub mod contour;
 pub mod fit;
 pub mod field;
 pub mod morphology;
+pub mod outer;
 pub mod decimate;
 pub mod compare;
 pub mod picture;

@@ -7,16 +7,17 @@ use serde_json::json;
 use super::drain::DrainChoice;
 use super::exit::Failure;
 use super::length::{Length, Scale};
+use super::maker::Maker;
 use super::report::RunReport;
 use super::shared_args::CommonArgs;
+use super::site::{Failed, Site};
 use super::words::{self, UnitName};
 use crate::mesh::TriMesh;
 use crate::morphology::{Canal, Operation};
 use crate::pipeline::{
-    self, Advice, BooleanError, CanalError, CanalOptions, CanalReport, HollowOptions, MorphologyOptions, Operand,
-    Outcome, Plan, Remove, SheetSide, SurfaceOptions, ThickenOptions, VoxelSize,
+    self, Advice, BooleanError, CanalError, CanalOptions, CanalReport, HollowOptions, MorphologyOptions, Outcome, Plan,
+    Remove, SheetSide, SurfaceOptions, ThickenOptions, VoxelSize,
 };
-use crate::progress::Progress;
 
 /// A change, as asked for.
 #[derive(Debug, Clone)]
@@ -44,6 +45,8 @@ pub enum Change {
         /// Holes through it.
         drains: Vec<DrainChoice>,
     },
+    /// Make something of the file in another way than by a repair.
+    Instead(Maker),
     /// Let thin walls and open sheets grow.
     Thicken {
         /// The least thickness.
@@ -90,6 +93,14 @@ impl From<Outcome> for Changed {
 }
 
 impl Change {
+    /// What is made instead of a repair.
+    pub fn instead(&self) -> Option<&Maker> {
+        match self {
+            Self::Instead(maker) => Some(maker),
+            _ => None,
+        }
+    }
+
     /// Whether there is a mesh to write.
     pub fn makes_a_mesh(&self) -> bool {
         !matches!(self, Self::Canals { remove: None, .. })
@@ -104,6 +115,7 @@ impl Change {
         failed: &Failed<'_>,
     ) -> Result<Plan, Failure> {
         match self.resolved(surface, scale)? {
+            Resolved::Nothing => Err(only_after_a_repair()),
             Resolved::Morphology(options) => pipeline::plan_morphology(mesh, &options).map_err(|e| failed(&e)),
             Resolved::Canals(options) => pipeline::plan_canals(mesh, &options).map_err(|e| failed(&e)),
             Resolved::Hollow(options) => pipeline::plan_hollow(mesh, &options).map_err(|e| failed(&e)),
@@ -127,6 +139,7 @@ impl Change {
         match (resolved, outcome) {
             (Resolved::Thicken(options), outcome) => site.thickened(outcome, &options),
             (_, None) => Err(Failure::internal("only what grows thicker can do without a solid")),
+            (Resolved::Nothing, _) => Err(only_after_a_repair()),
             (Resolved::Morphology(options), Some(outcome)) => {
                 let changed = pipeline::morphology(&outcome.solid, &options, site.progress);
                 site.followed(outcome, changed).map(Changed::from)
@@ -163,6 +176,7 @@ impl Change {
                 let drains = drains.iter().map(|drain| drain.resolve(scale)).collect::<Result<_, Failure>>()?;
                 Resolved::Hollow(HollowOptions { wall: wall.resolve(scale)?, drains, surface })
             }
+            Self::Instead(_) => Resolved::Nothing,
             Self::Thicken { min, side } => {
                 Resolved::Thicken(ThickenOptions { min: min.resolve(scale)?, side: *side, surface })
             }
@@ -170,21 +184,8 @@ impl Change {
     }
 }
 
-/// Makes a failure of a pipeline's error.
-type Failed<'a> = dyn Fn(&dyn Advice) -> Failure + 'a;
-
-/// What a change is made with.
-pub struct Site<'a> {
-    /// What the solid was made of.
-    pub operands: &'a [Operand<'a>],
-    /// How new surface is made.
-    pub surface: &'a SurfaceOptions,
-    /// What lengths are measured against.
-    pub scale: &'a Scale,
-    /// What an error means.
-    pub failed: &'a Failed<'a>,
-    /// How far it is, and whether it is to stop.
-    pub progress: &'a Progress,
+fn only_after_a_repair() -> Failure {
+    Failure::internal("what is made in another way than by a repair is no change of one")
 }
 
 impl Site<'_> {
@@ -225,6 +226,7 @@ impl Resolved {
     /// Writes the lengths into the options of the report.
     fn tell(&self, report: &mut serde_json::Value) {
         match self {
+            Self::Nothing => {}
             Self::Morphology(options) => {
                 report["radius"] = json!(options.radius);
                 report["mitre"] = json!(options.sharp);
@@ -241,6 +243,8 @@ impl Resolved {
 
 /// The options of one of the pipelines.
 enum Resolved {
+    /// It is no change of a solid.
+    Nothing,
     Morphology(MorphologyOptions),
     Canals(CanalOptions),
     Hollow(HollowOptions),

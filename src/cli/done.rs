@@ -2,7 +2,7 @@
 
 use super::words::{self, UnitName};
 use crate::morphology::Operation;
-use crate::pipeline::{DrainReport, HollowReport, Report, ThickenReport, TriangleKind};
+use crate::pipeline::{BlockReport, DrainReport, HollowReport, OuterReport, Report, ThickenReport, TriangleKind};
 
 /// What was done, one part of a sentence each.
 pub fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
@@ -35,6 +35,11 @@ pub fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
     let lidded = pipeline.holes.iter().filter(|hole| hole.has_lid()).count();
     add(lidded, "hole", &format!("closed with {}", words::plural(lids, "triangle")));
     add(pipeline.cut, "triangle", "cut along others first, so that what they cross in stays exact");
+    if let Some(outer) = &pipeline.outer {
+        let widest = pipeline.holes.iter().map(|hole| hole.diameter).reduce(f64::max);
+        parts.extend(seen(outer, widest, unit));
+    }
+    parts.extend(pipeline.block.as_ref().map(|block| under(block, unit)));
     if pipeline.ldi.silent_rays > 0 {
         let share = words::percent(pipeline.ldi.silent_rays, pipeline.ldi.rays);
         parts.push(format!("{share} of the test rays met a hole or a crack, where those in other directions decided"));
@@ -89,6 +94,46 @@ fn kept(pipeline: &Report) -> Vec<String> {
         }
     });
     parts
+}
+
+/// What a ball saw from outside. `widest`: the diameter of the widest hole that was closed.
+fn seen(found: &OuterReport, widest: Option<f64>, unit: UnitName<'_>) -> Vec<String> {
+    let ball = words::length(found.ball, unit);
+    let (outer, inner) = (words::plural(found.outer_triangles, "triangle"), words::count(found.inner_triangles));
+    let mut parts = vec![format!("a ball of {ball} was rolled around: {outer} it sees from outside")];
+    if found.inner_triangles > 0 {
+        let patches = match found.inner_patches {
+            0 => String::new(),
+            n => format!(", {} among them as a whole", words::plural(n, "patch")),
+        };
+        parts.push(format!("{inner} went, which it does not come to{patches}"));
+    }
+    parts.extend(
+        widest.map(|widest| format!("the widest hole that it does not pass is {} across", words::length(widest, unit))),
+    );
+    if let Some(thickness) = found.thickness {
+        let (sheets, area) = (words::plural(found.sheet_triangles, "triangle"), words::area(found.sheet_area, unit));
+        parts.push(format!(
+            "{sheets} ({area}) that it sees from both sides made {} thick",
+            words::length(thickness, unit)
+        ));
+    }
+    parts
+}
+
+/// The block under a sheet.
+fn under(block: &BlockReport, unit: UnitName<'_>) -> String {
+    let turned = match block.turned {
+        0 => String::new(),
+        n => format!("; {} turned over", words::plural(n, "sheet")),
+    };
+    format!(
+        "a block under {}, with walls under {} down to a base at {} = {}{turned}",
+        words::plural(block.sheets, "sheet"),
+        words::plural(block.edges, "open edge"),
+        block.axis,
+        words::with_unit(&words::number(block.base), unit)
+    )
 }
 
 fn thickened(thick: &ThickenReport, made: usize, unit: UnitName<'_>) -> String {

@@ -136,6 +136,7 @@ impl Failure {
             Trouble::Voxel => Self::new(if asked.voxel { Exit::Usage } else { Exit::Input }, error.to_string()),
             Trouble::NotExact(why) => Self::new(Exit::Limit, not_exact(why, labels)),
             Trouble::Input => Self::input(error.to_string()),
+            Trouble::Unkept => Self::new(Exit::Limit, error.to_string()),
             Trouble::NoRoom => Self::new(Exit::Memory, error.to_string()),
             Trouble::Device | Trouble::Call | Trouble::Index => Self::internal(error.to_string()),
         };

@@ -2,6 +2,7 @@
 
 mod args;
 mod backend;
+mod base;
 mod boolean;
 mod change;
 mod choices;
@@ -36,6 +37,7 @@ mod keep;
 mod length;
 mod limits;
 mod machine;
+mod maker;
 mod map;
 mod misuse;
 mod morphology;
@@ -56,6 +58,7 @@ mod sdf_args;
 mod session;
 mod shared_args;
 mod side;
+mod site;
 mod slice;
 mod solid;
 mod solid_args;

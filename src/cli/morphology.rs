@@ -1,14 +1,16 @@
 //! `dilate`, `erode`, `open` and `close IN -o OUT --radius LEN`, `canals IN --max-diameter LEN`, and
-//! `thicken IN -o OUT --min LEN`.
+//! `thicken IN -o OUT --min LEN`, or `--base LEN|PLANE`.
 
 use clap::Args;
 use std::path::Path;
 use std::path::PathBuf;
 
+use super::base::BaseChoice;
 use super::change::{Change, RemoveChoice};
 use super::choices::SideChoice;
 use super::exit::{Exit, Failure};
 use super::length::{Length, parse_radius};
+use super::maker::Maker;
 use super::report::RunReport;
 use super::session::Session;
 use super::solid::{self, Job};
@@ -58,18 +60,21 @@ pub struct CanalArgs {
     pub solid: SolidArgs,
 }
 
-/// `thicken IN -o OUT --min LEN`.
+/// `thicken IN -o OUT --min LEN`, or `--base LEN|PLANE`.
 #[derive(Debug, Args)]
 pub struct ThickenArgs {
-    /// The mesh; it is repaired first, all its shells together are one solid
+    /// The mesh; without --base it is repaired first, all its shells together are one solid
     #[arg(value_name = "IN")]
     pub input: PathBuf,
     /// The least thickness of walls, at least four voxels
-    #[arg(short, long, value_name = "LEN", allow_hyphen_values = true)]
-    pub min: Length,
+    #[arg(short, long, value_name = "LEN", allow_hyphen_values = true, required_unless_present = "base")]
+    pub min: Option<Length>,
     /// Where open sheets grow
     #[arg(long, value_enum, default_value_t = SideChoice::Both)]
     pub side: SideChoice,
+    /// Make a block of an open sheet, such as terrain: walls from its rims down to a flat base so far below its lowest point, or in a plane (z=-5mm)
+    #[arg(long, value_name = "LEN|PLANE", allow_hyphen_values = true, conflicts_with_all = ["min", "side"])]
+    pub base: Option<BaseChoice>,
     /// Flags of the pipeline and its output.
     #[command(flatten)]
     pub solid: SolidArgs,
@@ -111,7 +116,11 @@ pub fn canals(args: &CanalArgs, session: &Session, report: &mut RunReport) -> Re
 
 /// Lets the thin walls of one file grow.
 pub fn thicken(args: &ThickenArgs, session: &Session, report: &mut RunReport) -> Result<Exit, Failure> {
-    let change = Change::Thicken { min: args.min, side: args.side.into() };
+    let change = match (args.min, args.base) {
+        (_, Some(base)) => Change::Instead(Maker::Block { base }),
+        (Some(min), None) => Change::Thicken { min, side: args.side.into() },
+        (None, None) => return Err(Failure::usage("how thick is not said: --min LEN, or --base LEN for a block")),
+    };
     changed(&args.input, &change, &args.solid, session, report)
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::change::{self, Change, Changed, Site};
+use super::change::{self, Change, Changed};
 use super::entries::OutputEntry;
 use super::epilogue;
 use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
@@ -18,6 +18,7 @@ use super::paint::{self, Arranged};
 use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
+use super::site::Site;
 use super::solid_args::SolidArgs;
 use super::target::Target;
 use super::{backend, doubts, keep, limits, machine, negative, summary, table, weights, words};
@@ -174,11 +175,15 @@ fn plan(
     let failed = |e: &dyn Advice| failure(&e, inputs, unit, args);
     // Of negative parts the plan of a change knows nothing: their difference comes first.
     let operands = || inputs.iter().take(expression.operand_count()).map(|input| Operand::from(&input.loaded));
-    let planned = |options: &Options| match (pipeline::plan(operands(), options), job.change) {
-        (Ok(plan), Some(change)) => {
-            Ok(plan.then(change.plan(&inputs[0].loaded.mesh, &options.surface(), scale, &failed)?))
+    let planned = |options: &Options| {
+        let mesh = &inputs[0].loaded.mesh;
+        if let Some(maker) = job.change.and_then(Change::instead) {
+            return maker.plan(mesh, options, scale, &failed);
         }
-        (plan, _) => plan.map_err(|e| failed(&e)),
+        match (pipeline::plan(operands(), options), job.change) {
+            (Ok(plan), Some(change)) => Ok(plan.then(change.plan(mesh, &options.surface(), scale, &failed)?)),
+            (plan, _) => plan.map_err(|e| failed(&e)),
+        }
     };
     let plan = planned(options)?;
     report.result = Some(RunResult::Plan { plan });
@@ -228,15 +233,10 @@ fn make(
     if let Ok(work) = Work::of(&meshes, options) {
         session.expect(&weights::of_solid(report.verb, &work, options.fit.as_ref()));
     }
-    let made = pipeline::boolean(operands.iter().copied(), expression, options, &session.progress);
     let failed = |e: &dyn Advice| failure(&e, inputs, unit, args);
-    let Changed { mut outcome, mut canal_of } = match job.change {
-        None => made.map(Changed::from).map_err(|e| failed(&e))?,
-        Some(change) => {
-            let (surface, progress) = (&options.surface(), &session.progress);
-            change.apply(made, &Site { operands: &operands, surface, scale, failed: &failed, progress }, report)?
-        }
-    };
+    let (surface, progress) = (&options.surface(), &session.progress);
+    let site = Site { operands: &operands, surface, scale, failed: &failed, progress };
+    let Changed { mut outcome, mut canal_of } = made(job, expression, options, &site, report)?;
     if let Some(volume) = args.drop_smaller {
         let least = volume.resolve(scale)?;
         let dropped = pipeline::drop_smaller(outcome, operands.iter().copied(), least, &session.progress);
@@ -283,6 +283,24 @@ fn make(
     }
     let is_whole = guessed.is_none() && lost.is_empty() && opened.is_none();
     Ok(if is_whole { exit } else { Exit::Limit })
+}
+
+/// The solid that is asked for.
+fn made(
+    job: &Job<'_>,
+    expression: &Expression,
+    options: &Options,
+    site: &Site<'_>,
+    report: &mut RunReport,
+) -> Result<Changed, Failure> {
+    if let Some(maker) = job.change.and_then(Change::instead) {
+        return maker.make(options, site, report).map(Changed::from);
+    }
+    let made = pipeline::boolean(site.operands.iter().copied(), expression, options, site.progress);
+    match job.change {
+        None => made.map(Changed::from).map_err(|e| (site.failed)(&e)),
+        Some(change) => change.apply(made, site, report),
+    }
 }
 
 /// Writes the result and judges the written file.

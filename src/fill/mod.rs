@@ -25,6 +25,7 @@ mod level;
 mod minimal;
 mod polygon;
 mod refine;
+mod region;
 mod rims;
 mod sheet;
 mod skyline;
@@ -35,6 +36,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 pub use level::level_lid;
+pub(crate) use region::region;
 pub use rims::{Rim, rims};
 
 use self::boundary::{Boundary, normal, on_a_line};

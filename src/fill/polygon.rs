@@ -52,7 +52,8 @@ fn meet(points: &[DVec2], k: usize, other: usize) -> bool {
     !apart(c_side, d_side) && !apart(a_side, b_side)
 }
 
-/// The triangles of a simple polygon that runs counter-clockwise; `None` where no ear is left. Ears with the shortest chords go first. A triangle has no
+/// The triangles of a polygon that runs counter-clockwise and does not cross itself; `None` where no ear is left. Points may be there twice, as at the ends of a bridge between
+/// what is around and a hole. Ears with the shortest chords go first. A triangle has no
 /// area only where nothing but points on one line was left.
 pub(super) fn clip_ears(points: &[DVec2]) -> Option<Vec<[u32; 3]>> {
     let mut ears = Ears::new(points);
@@ -141,6 +142,7 @@ impl<'a> Ears<'a> {
             let at = self.points[p as usize];
             self.live[p as usize]
                 && !mine.contains(&p)
+                && ![a, b, c].contains(&at)
                 && side_of_line(a, b, at) >= 0.0
                 && side_of_line(b, c, at) >= 0.0
                 && side_of_line(c, a, at) >= 0.0

@@ -1,13 +1,14 @@
 //! What kind of trouble an error is, and what to try: the same questions for the errors of all pipelines.
 
 use super::{
-    BooleanError, CanalError, DistanceError, FieldError, HollowError, LimitError, MorphologyError, ThickenError,
-    ThicknessError,
+    BlockError, BooleanError, CanalError, DistanceError, FieldError, HollowError, LimitError, MorphologyError,
+    OuterError, ThickenError, ThicknessError,
 };
 use crate::arrange::ArrangeError;
 use crate::field::FillError;
 use crate::field::language::BuildError;
 use crate::mesh::NotSolid;
+use crate::outer::ReachError;
 use crate::progress::Stopped;
 
 /// What kind of trouble an error is.
@@ -30,6 +31,8 @@ pub enum Trouble<'a> {
     Index,
     /// More memory would be needed than allowed.
     Memory(&'a LimitError),
+    /// What was asked for cannot be promised of this input.
+    Unkept,
     /// There is no memory left.
     NoRoom,
     /// The graphics processor cannot do it.
@@ -212,6 +215,53 @@ impl Advice for ThicknessError {
             Self::Index(_) => Trouble::Index,
             Self::Lattice(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
+        }
+    }
+}
+
+impl Advice for BlockError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::Depth { .. } | Self::Through { .. } => Trouble::Options,
+            Self::Closed | Self::Upright { .. } => Trouble::Input,
+            Self::Boolean(error) => error.trouble(),
+        }
+    }
+
+    fn hint(&self) -> Option<String> {
+        match self {
+            Self::Upright { .. } => {
+                Some("name another axis, such as --base x=0, or take the part out of the file".into())
+            }
+            Self::Boolean(error) => error.hint(),
+            _ => None,
+        }
+    }
+}
+
+impl Advice for OuterError {
+    fn trouble(&self) -> Trouble<'_> {
+        match self {
+            Self::Reach(ReachError::Stopped(stopped)) => Trouble::Stopped(*stopped),
+            Self::Reach(ReachError::Empty) => Trouble::Empty { operand: 0 },
+            Self::Reach(ReachError::Ball { .. }) => Trouble::Options,
+            Self::Reach(ReachError::Memory { .. }) => Trouble::NoRoom,
+            Self::Sheets { .. } => Trouble::Unkept,
+            Self::Cut(error) => Trouble::NotExact(error),
+            Self::Boolean(error) => error.trouble(),
+            Self::Thicken(error) => error.trouble(),
+        }
+    }
+
+    fn hint(&self) -> Option<String> {
+        match self {
+            Self::Sheets { .. } => Some(
+                "--thickness LEN makes walls of them; a larger ball, --outer LEN, does not pass holes that are narrower than it"
+                    .into(),
+            ),
+            Self::Boolean(error) => error.hint(),
+            Self::Thicken(error) => error.hint(),
+            _ => None,
         }
     }
 }

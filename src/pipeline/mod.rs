@@ -8,6 +8,8 @@ mod account;
 mod advice;
 mod ahead;
 mod apart;
+mod assembled;
+mod block;
 mod boolean;
 mod canals;
 mod changed;
@@ -29,6 +31,7 @@ mod operand;
 mod options;
 mod order;
 mod outcome;
+mod outer;
 mod outlook;
 mod plan;
 mod rebuild;
@@ -45,6 +48,7 @@ mod topology;
 mod work;
 
 pub use advice::{Advice, Trouble};
+pub use block::{Base, BlockError, block, plan_block};
 pub use boolean::{boolean, repair};
 pub use canals::{CanalError, CanalOptions, CanalOutcome, Remove, canals, plan_canals};
 pub use changed::Changed;
@@ -65,11 +69,12 @@ pub use morphology::{MorphologyOptions, morphology, plan_morphology};
 pub use operand::Operand;
 pub use options::{Method, Options, Precision, SurfaceOptions, VoxelSize};
 pub use outcome::Outcome;
+pub use outer::{OuterError, OuterOptions, outer, plan_outer};
 pub use plan::{Plan, plan};
 pub use report::{
-    CanalReport, DrainReport, Dropped, HoleClosing, HoleReport, HollowReport, LdiReport, LidShape, LostBody,
-    MorphologyReport, NotLidded, NothingEnclosed, Report, StageTime, StandingReport, ThickenReport, ThinRegion,
-    ThinReport, Topology, TopologyReport, TriangleCounts, TriangleKind, Warning,
+    BlockReport, CanalReport, DrainReport, Dropped, HoleClosing, HoleReport, HollowReport, LdiReport, LidShape,
+    LostBody, MorphologyReport, NotLidded, NothingEnclosed, OuterReport, Report, StageTime, StandingReport,
+    ThickenReport, ThinRegion, ThinReport, Topology, TopologyReport, TriangleCounts, TriangleKind, Warning,
 };
 pub use sizing::{LatticeError, MAX_RESOLUTION};
 pub use source::TriangleSource;

@@ -15,6 +15,7 @@ mod maps;
 mod readers;
 mod schema;
 mod sdf;
+mod sheets;
 mod slices;
 mod solids;
 mod stops;

@@ -128,10 +128,19 @@ fn a_patch_is_turned_to_the_surface_that_it_is_a_part_of_by_every_rule() {
     upper.triangles.drain(0..2);
     let cracked = joined([lower, facing(upper, true)]);
     for inside in RULES {
-        let outcome = repair(&cracked, &options(32, inside), &Progress::none()).expect("a solid");
+        let cracked = |tolerance: Option<f64>| {
+            let options = meshwright::Options { tolerance, ..options(32, inside) };
+            repair(&cracked, &options, &Progress::none()).expect("a solid")
+        };
+        let outcome = cracked(Some(0.0));
         let found = volume(&outcome);
         assert!((found - 64.0).abs() < 0.5, "{inside:?}: {found}");
         assert!(outcome.report.orient[0].flipped_patches == 1, "{inside:?}");
+        // A crack as narrow as that is closed first, and neighbours agree.
+        let outcome = cracked(None);
+        let found = volume(&outcome);
+        assert!((found - 64.0).abs() < 1e-3 && !outcome.report.lattice, "{inside:?}: {found}");
+        assert_eq!(outcome.report.orient[0].flipped_in_patches, 10, "{inside:?}");
     }
 }
 

@@ -4,6 +4,7 @@
 mod common;
 
 mod arrange;
+mod block;
 mod closing;
 mod compare;
 mod contour;
@@ -22,6 +23,7 @@ mod io;
 mod keep;
 mod mesh;
 mod morphology;
+mod outer;
 mod rays;
 mod sdf;
 mod simplify;

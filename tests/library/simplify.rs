@@ -97,10 +97,10 @@ fn drilled(seed: u64) -> Vec<TriMesh> {
 fn a_larger_tolerance_gives_no_more_triangles() {
     for seed in 0..2 {
         let meshes = drilled(seed);
-        let whole = made(&meshes, &without(0, 6), &rebuilt(80, 0.0)).0;
+        let whole = made(&meshes, &without(0, 6), &rebuilt(60, 0.0)).0;
         let mut fewest = usize::MAX;
         for tolerance in [0.002, 0.02, 0.2] {
-            let (simple, _) = made(&meshes, &without(0, 6), &rebuilt(80, tolerance));
+            let (simple, _) = made(&meshes, &without(0, 6), &rebuilt(60, tolerance));
             let h = simple.lattice.h;
             let off = farthest(&whole.solid, &simple.solid).max(farthest(&simple.solid, &whole.solid)) / h;
             // Places that are given up are a voxel rounder, in the one or in the other.
@@ -117,11 +117,11 @@ fn a_larger_tolerance_gives_no_more_triangles() {
 
 #[test]
 fn a_round_surface_is_simplified_within_the_tolerance_both_ways() {
-    let torus = crate::common::shapes::torus(64, 32);
-    let whole = made(std::slice::from_ref(&torus), &Expression::Operand(0), &rebuilt(32, 0.0)).0;
+    let torus = crate::common::shapes::torus(96, 48);
+    let whole = made(std::slice::from_ref(&torus), &Expression::Operand(0), &rebuilt(40, 0.0)).0;
     let mut last = whole.solid.triangles.len();
     for tolerance in [0.05, 0.3, 1.0] {
-        let simple = made(std::slice::from_ref(&torus), &Expression::Operand(0), &rebuilt(32, tolerance)).0;
+        let simple = made(std::slice::from_ref(&torus), &Expression::Operand(0), &rebuilt(40, tolerance)).0;
         let off = farthest(&whole.solid, &simple.solid).max(farthest(&simple.solid, &whole.solid)) / simple.lattice.h;
         assert!(off <= 1.05 * tolerance, "{off} h for {tolerance}");
         let triangles = simple.solid.triangles.len();

@@ -93,10 +93,15 @@ fn each_side_of_a_box_can_be_on_its_own_and_turned() {
         quad.positions.iter_mut().for_each(|p| *p += 1e-7 * side as f64);
         loose.append(&if side % 2 == 0 { quad } else { turned_over(quad) });
     }
-    let (outcome, validity) = repaired(&loose, 32);
+    let apart = Options { tolerance: Some(0.0), ..options(32) };
+    let outcome = repair(&loose, &apart, &Progress::none()).expect("a solid");
     assert_eq!(outcome.report.orient[0].patches, 6);
     assert_eq!(outcome.report.orient[0].flipped_patches, 3);
-    close(validity.volume, 1.0, 1e-3);
+    close(outcome.solid.validity().volume, 1.0, 1e-3);
+    // With the cracks closed first it is the box.
+    let (outcome, validity) = repaired(&loose, 32);
+    assert_eq!((outcome.solid.triangles.len(), outcome.report.orient[0].patches), (12, 1));
+    close(validity.volume, 1.0, 1e-5);
 }
 
 #[test]

@@ -152,7 +152,7 @@ fn a_thickness_that_the_lattice_cannot_hold_is_refused_with_the_voxel_that_can()
 #[test]
 fn walls_far_below_the_wanted_thickness_are_seen_and_grow_to_it() {
     let plate = cuboid(DVec3::ZERO, DVec3::new(10.0, 10.0, 0.4));
-    for least in [0.7, 6.0, 12.0] {
+    for least in [0.7, 12.0] {
         let options =
             ThickenOptions { min: least, side: SheetSide::Both, surface: SurfaceOptions::new(VoxelSize::Along(64)) };
         let outcome = thickened(&plate, &options).expect("a solid");

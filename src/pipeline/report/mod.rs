@@ -4,6 +4,7 @@ mod holes;
 mod join;
 mod nothing;
 mod operations;
+mod sheets;
 mod thin;
 mod topology;
 mod triangles;
@@ -12,6 +13,7 @@ mod warning;
 pub use holes::{HoleClosing, HoleReport, LidShape, NotLidded};
 pub use nothing::NothingEnclosed;
 pub use operations::{CanalReport, DrainReport, HollowReport, MorphologyReport, ThickenReport};
+pub use sheets::{BlockReport, OuterReport};
 pub use thin::{ThinRegion, ThinReport};
 pub use topology::{LostBody, Topology, TopologyReport};
 pub use triangles::{Dropped, StandingReport, TriangleCounts, TriangleKind};
@@ -68,6 +70,10 @@ pub struct Report {
     pub hollow: Option<HollowReport>,
     /// Walls that were too thin; `None` where none were looked for.
     pub thicken: Option<ThickenReport>,
+    /// The block under a sheet; `None` where none was to be made.
+    pub block: Option<BlockReport>,
+    /// What a ball saw from outside; `None` where none was rolled around the surface.
+    pub outer: Option<OuterReport>,
     /// Canals that were listed; `None` where none were looked for.
     pub canals: Option<CanalReport>,
     /// Surfaces under eight voxels that no operand asked for; they are not in the result.

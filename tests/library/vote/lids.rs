@@ -97,7 +97,7 @@ fn any_turn() -> impl Strategy<Value = DMat3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 8, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 4, ..ProptestConfig::default() })]
 
     #[test]
     fn over_the_missing_side_of_a_turned_cube_lies_its_plane(turn in any_turn(), missing in 0usize..6) {
