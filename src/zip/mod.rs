@@ -1,7 +1,7 @@
 //! Cracks closed by moving vertices a little: open edges that lie along each other become one.
 //!
 //! Files that were tessellated face by face have seams whose sides do not agree: by the rounding of numbers, or because one side has a vertex where the other has none (a T-junction).
-//! [`zip`] puts such vertices on the edges that they lie beside, and merges the ends of edges that run along each other. Nothing moves farther than the tolerance, and only vertices at open
+//! [`zip()`] puts such vertices on the edges that they lie beside, and merges the ends of edges that run along each other. Nothing moves farther than the tolerance, and only vertices at open
 //! edges move.
 
 mod grid;
@@ -88,6 +88,21 @@ struct Open {
     ends: [u32; 2],
 }
 
+/// An edge of a triangle, and the vertices that are put on it, in order.
+struct Division {
+    ends: [u32; 2],
+    on: Vec<u32>,
+}
+
+/// Two open edges that may become one.
+struct Pair {
+    /// How far the farthest of their ends is from its place on the other.
+    apart: f64,
+    edges: [u32; 2],
+    /// The ends that become one.
+    ends: [[u32; 2]; 2],
+}
+
 struct Work {
     mesh: TriMesh,
     sources: Vec<u32>,
@@ -126,12 +141,12 @@ impl Work {
             / open.len() as f64;
         let grid = Grid::new(ends.iter().map(|&v| (self.at(v), v)), mean.max(4.0 * tolerance));
         let mut inserted = 0;
-        let mut cuts: FxHashMap<u32, Vec<(usize, [u32; 2], Vec<u32>)>> = FxHashMap::default();
-        for (n, edge) in open.iter().enumerate() {
+        let mut cuts: FxHashMap<u32, Vec<Division>> = FxHashMap::default();
+        for edge in open {
             let on = self.along(edge, &grid, &beside, tolerance);
             if !on.is_empty() {
                 inserted += on.len();
-                cuts.entry(edge.triangle).or_default().push((n, edge.ends, on));
+                cuts.entry(edge.triangle).or_default().push(Division { ends: edge.ends, on });
             }
         }
         if inserted > 0 {
@@ -174,11 +189,11 @@ impl Work {
     }
 
     /// Divides triangles at the vertices along their edges.
-    fn divide(&mut self, cuts: &FxHashMap<u32, Vec<(usize, [u32; 2], Vec<u32>)>>) {
+    fn divide(&mut self, cuts: &FxHashMap<u32, Vec<Division>>) {
         let (mut triangles, mut sources) = (Vec::new(), Vec::new());
         for (t, &corners) in (0u32..).zip(&self.mesh.triangles) {
             let mut pieces = vec![corners];
-            for (_, [a, b], on) in cuts.get(&t).into_iter().flatten() {
+            for Division { ends: [a, b], on } in cuts.get(&t).into_iter().flatten() {
                 let has = |piece: &[u32; 3]| (0..3).find(|&k| piece[k] == *a && piece[(k + 1) % 3] == *b);
                 let Some((at, k)) = pieces.iter().enumerate().find_map(|(n, piece)| Some((n, has(piece)?))) else {
                     continue;
@@ -198,7 +213,7 @@ impl Work {
     fn merge(&mut self, open: &[Open], tolerance: f64) -> (usize, f64) {
         let middle = |edge: &Open| (self.at(edge.ends[0]) + self.at(edge.ends[1])) / 2.0;
         let grid = Grid::new((0u32..).zip(open).map(|(n, edge)| (middle(edge), n)), 2.0 * tolerance);
-        let mut pairs: Vec<(f64, [u32; 2], [[u32; 2]; 2])> = Vec::new();
+        let mut pairs: Vec<Pair> = Vec::new();
         for (n, edge) in (0u32..).zip(open) {
             let at = middle(edge);
             grid.each_along(at, at, tolerance, |m| {
@@ -214,14 +229,14 @@ impl Work {
                 let (turned, same) = ([[a, d], [b, c]], [[a, c], [b, d]]);
                 let best = if apart(turned) <= apart(same) { turned } else { same };
                 if apart(best) <= tolerance {
-                    pairs.push((apart(best), [n, m], best));
+                    pairs.push(Pair { apart: apart(best), edges: [n, m], ends: best });
                 }
             });
         }
-        pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+        pairs.sort_by(|x, y| x.apart.total_cmp(&y.apart).then(x.edges.cmp(&y.edges)));
         let mut paired = FxHashSet::default();
         let mut groups = Groups::default();
-        for (_, edges, ends) in pairs {
+        for Pair { edges, ends, .. } in pairs {
             if edges.iter().any(|n| paired.contains(n)) {
                 continue;
             }

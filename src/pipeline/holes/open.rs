@@ -82,9 +82,9 @@ impl Outcome {
         for hole in self.report.holes.iter_mut().filter(leave) {
             (hole.closed_by, hole.triangles, hole.area) = (HoleClosing::LeftOpen, 0, 0.0);
         }
-        let gone = self.sources.iter().filter(|source| goes(source)).count();
-        self.report.triangles.made_up -= gone;
-        self.report.closed_triangles -= gone;
+        // Whatever was left open before: of that the solid knows nothing.
+        let left = self.sources.iter().filter(|source| source.is_made_up() && !goes(source)).count();
+        (self.report.triangles.made_up, self.report.closed_triangles) = (left, left);
         let numbers = (0u32..).zip(&self.sources);
         let triangles: Vec<u32> = numbers.filter(|(_, source)| !goes(source)).map(|(t, _)| t).collect();
         let mut number = vec![None; self.solid.positions.len()];
