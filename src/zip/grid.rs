@@ -23,11 +23,20 @@ impl Grid {
         (p / self.cell).floor().as_ivec3()
     }
 
-    /// Calls `found` once with the number of every point within `reach` of the line from `a` to `b`, and with some farther ones.
-    pub(super) fn each_along(&self, a: DVec3, b: DVec3, reach: f64, mut found: impl FnMut(u32)) {
+    /// Calls `found` once with the number of every point within `reach` of the line from `a` to `b`, and with some farther ones. What it looks at is taken from `budget`: nothing
+    /// is found with one that does not suffice, and `None` is returned.
+    pub(super) fn each_along(
+        &self,
+        [a, b]: [DVec3; 2],
+        reach: f64,
+        budget: &mut usize,
+        mut found: impl FnMut(u32),
+    ) -> Option<()> {
         let steps = (a.distance(b) / self.cell).ceil().max(1.0);
         // Around the middle of each step, by half of its length.
         let around = DVec3::splat(reach + a.distance(b) / steps / 2.0);
+        // Each step looks at 27 cubes at most.
+        *budget = budget.checked_sub(steps.min(1e15) as usize)?;
         let mut cubes: Vec<[i32; 3]> = Vec::new();
         for step in 0..steps as usize {
             let at = a.lerp(b, (step as f64 + 0.5) / steps);
@@ -40,7 +49,9 @@ impl Grid {
         }
         cubes.sort_unstable();
         cubes.dedup();
-        let points = cubes.iter().filter_map(|&cube| self.cubes.get(&IVec3::from_array(cube))).flatten();
-        points.for_each(|&(_, number)| found(number));
+        let lists = || cubes.iter().filter_map(|&cube| self.cubes.get(&IVec3::from_array(cube)));
+        *budget = budget.checked_sub(lists().map(Vec::len).sum())?;
+        lists().flatten().for_each(|&(_, number)| found(number));
+        Some(())
     }
 }

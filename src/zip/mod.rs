@@ -19,6 +19,10 @@ use crate::progress::{Progress, Stopped};
 /// The tolerance that is used where none is given, as a share of the diagonal of the mesh: text with six digits, and single precision some way from the origin, are rounded by less.
 pub const USUAL: f64 = 1e-5;
 
+/// So many steps and neighbours are looked at for each open edge, on average. Where there are more within the tolerance, sheets lie on each other there, or the tolerance is far
+/// larger than the triangles: these are no cracks, and to look at all pairs would take for ever.
+const BUDGET: usize = 100;
+
 /// A mesh whose cracks are closed.
 #[derive(Debug, Clone)]
 pub struct Zipped {
@@ -73,10 +77,11 @@ pub fn zip(mesh: &TriMesh, tolerance: Option<f64>, progress: &Progress) -> Resul
     }
     let mut report = ZipReport { open_before: open.len(), ..ZipReport::default() };
     progress.check()?;
-    report.inserted = work.insert(&open, tolerance);
+    let Some(inserted) = work.insert(&open, tolerance) else { return Ok(None) };
     progress.check()?;
     let open = work.open();
-    (report.merged, report.farthest) = work.merge(&open, tolerance);
+    let Some((merged, farthest)) = work.merge(&open, tolerance) else { return Ok(None) };
+    (report.inserted, report.merged, report.farthest) = (inserted, merged, farthest);
     report.open_after = work.open().len();
     Ok((report.open_after < report.open_before).then_some(Zipped { mesh: work.mesh, sources: work.sources, report }))
 }
@@ -126,8 +131,9 @@ impl Work {
         self.mesh.positions[v as usize]
     }
 
-    /// Puts vertices at open edges on the open edges of other triangles that they lie beside, where an open edge runs along there. Returns how many.
-    fn insert(&mut self, open: &[Open], tolerance: f64) -> usize {
+    /// Puts vertices at open edges on the open edges of other triangles that they lie beside, where an open edge runs along there. Returns how many; `None` beyond the
+    /// [budget](BUDGET).
+    fn insert(&mut self, open: &[Open], tolerance: f64) -> Option<usize> {
         let mut ends: Vec<u32> = open.iter().flat_map(|edge| edge.ends).collect();
         ends.sort_unstable();
         ends.dedup();
@@ -142,8 +148,9 @@ impl Work {
         let grid = Grid::new(ends.iter().map(|&v| (self.at(v), v)), mean.max(4.0 * tolerance));
         let mut inserted = 0;
         let mut cuts: FxHashMap<u32, Vec<Division>> = FxHashMap::default();
+        let mut budget = BUDGET * open.len();
         for edge in open {
-            let on = self.along(edge, &grid, &beside, tolerance);
+            let on = self.along(edge, &grid, &beside, (tolerance, &mut budget))?;
             if !on.is_empty() {
                 inserted += on.len();
                 cuts.entry(edge.triangle).or_default().push(Division { ends: edge.ends, on });
@@ -152,11 +159,17 @@ impl Work {
         if inserted > 0 {
             self.divide(&cuts);
         }
-        inserted
+        Some(inserted)
     }
 
     /// The vertices that lie beside an open edge, in order along it.
-    fn along(&self, edge: &Open, grid: &Grid, beside: &FxHashMap<u32, Vec<u32>>, tolerance: f64) -> Vec<u32> {
+    fn along(
+        &self,
+        edge: &Open,
+        grid: &Grid,
+        beside: &FxHashMap<u32, Vec<u32>>,
+        (tolerance, budget): (f64, &mut usize),
+    ) -> Option<Vec<u32>> {
         let [a, b] = edge.ends.map(|v| self.at(v));
         let way = b - a;
         let squared = way.length_squared();
@@ -166,7 +179,7 @@ impl Work {
             (p.distance(a + way * t) <= tolerance).then_some(t)
         };
         let mut on: Vec<(f64, u32)> = Vec::new();
-        grid.each_along(a, b, tolerance, |v| {
+        grid.each_along([a, b], tolerance, budget, |v| {
             let p = self.at(v);
             if corners.contains(&v) || p.distance(a) <= tolerance || p.distance(b) <= tolerance {
                 return;
@@ -180,12 +193,12 @@ impl Work {
             if runs {
                 on.push((t, v));
             }
-        });
+        })?;
         on.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
         on.dedup();
         // Two within the tolerance of each other are merged later; only one may stand on the edge.
         on.dedup_by(|later, earlier| self.at(later.1).distance(self.at(earlier.1)) <= tolerance);
-        on.into_iter().map(|(_, v)| v).collect()
+        Some(on.into_iter().map(|(_, v)| v).collect())
     }
 
     /// Divides triangles at the vertices along their edges.
@@ -209,14 +222,15 @@ impl Work {
         (self.mesh.triangles, self.sources) = (triangles, sources);
     }
 
-    /// Merges the ends of open edges that run along each other. Returns how many vertices moved, and how far the farthest.
-    fn merge(&mut self, open: &[Open], tolerance: f64) -> (usize, f64) {
+    /// Merges the ends of open edges that run along each other. Returns how many vertices moved, and how far the farthest; `None` beyond the [budget](BUDGET).
+    fn merge(&mut self, open: &[Open], tolerance: f64) -> Option<(usize, f64)> {
         let middle = |edge: &Open| (self.at(edge.ends[0]) + self.at(edge.ends[1])) / 2.0;
         let grid = Grid::new((0u32..).zip(open).map(|(n, edge)| (middle(edge), n)), 2.0 * tolerance);
         let mut pairs: Vec<Pair> = Vec::new();
+        let mut budget = BUDGET * open.len();
         for (n, edge) in (0u32..).zip(open) {
             let at = middle(edge);
-            grid.each_along(at, at, tolerance, |m| {
+            grid.each_along([at, at], tolerance, &mut budget, |m| {
                 let other = &open[m as usize];
                 if m <= n || other.triangle == edge.triangle {
                     return;
@@ -231,7 +245,7 @@ impl Work {
                 if apart(best) <= tolerance {
                     pairs.push(Pair { apart: apart(best), edges: [n, m], ends: best });
                 }
-            });
+            })?;
         }
         pairs.sort_by(|x, y| x.apart.total_cmp(&y.apart).then(x.edges.cmp(&y.edges)));
         let mut paired = FxHashSet::default();
@@ -255,7 +269,7 @@ impl Work {
         self.mesh.triangles.retain(|_| *stay.next().unwrap_or(&true));
         let mut stay = stays.iter();
         self.sources.retain(|_| *stay.next().unwrap_or(&true));
-        (moved, farthest)
+        Some((moved, farthest))
     }
 }
 

@@ -71,7 +71,7 @@ fn holes_of_a_torus_are_closed_as_the_torus() {
         (outside, 0.4, Style::Smooth, 0.010, 0.0028),
         (outside, 0.6, Style::Smooth, 0.015, 0.0030),
         (inside, 0.2, Style::Smooth, 0.0035, 0.0012),
-        (inside, 0.4, Style::Smooth, 0.0045, 0.0015),
+        (inside, 0.4, Style::Smooth, 0.0055, 0.0015),
         (inside, 0.6, Style::Smooth, 0.0080, 0.0035),
         (above, 0.2, Style::Smooth, 0.0045, 0.0013),
         (above, 0.4, Style::Smooth, 0.0085, 0.0020),
