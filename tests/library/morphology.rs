@@ -83,7 +83,7 @@ fn round_offsets_lie_at_their_distance_and_grow_with_it() {
         let mut before = 0.0;
         for radius in [-0.15f64, 0.08, 0.2] {
             let operation = if radius > 0.0 { Dilate } else { Erode };
-            let surface = SurfaceOptions::new(VoxelSize::Along(48));
+            let surface = SurfaceOptions::new(VoxelSize::Along(64));
             let (outcome, validity) = made(&mesh, &MorphologyOptions { surface, ..options(operation, radius.abs()) });
             let [low, high] = range(&outcome.solid, &mesh);
             let h = outcome.lattice.h;
