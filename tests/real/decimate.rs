@@ -8,7 +8,8 @@ fn valid_solids_stay_valid_with_their_bodies_and_tunnels_down_to_the_last_triang
     let Some(data) = data() else { return };
     let meshes: Vec<_> = data.clean().into_iter().filter(|(_, mesh)| state(mesh, false).is_valid()).collect();
     assert!(meshes.len() > 8, "{} of the clean meshes are valid", meshes.len());
-    for (name, mesh) in meshes {
+    // The large ones take as long as all others together.
+    for (name, mesh) in meshes.into_iter().filter(|(_, mesh)| mesh.triangles.len() < 10_000) {
         stays_valid_when_decimated(&name, &mesh);
     }
 }

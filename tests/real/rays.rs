@@ -7,7 +7,7 @@ use crate::data;
 fn clean_meshes_balance() {
     let Some(data) = data() else { return };
     for (name, mesh) in data.clean() {
-        for resolution in [64, 256, 1024] {
+        for resolution in [64, 512] {
             assert_balanced(&name, &mesh, resolution, 1);
         }
         assert_balanced(&name, &mesh, 64, 2);
