@@ -110,6 +110,14 @@ pub struct Lid {
     pub area: f64,
 }
 
+impl Lid {
+    /// The triangles where a mesh of `known` vertices has got `others` more since, and the lid's come after these.
+    pub fn triangles_after(&self, known: usize, others: usize) -> impl Iterator<Item = [u32; 3]> + '_ {
+        let number = move |v: u32| if (v as usize) < known { v } else { v + others as u32 };
+        self.triangles.iter().map(move |corners| corners.map(number))
+    }
+}
+
 /// Why a rim cannot be closed by itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NoLid {

@@ -115,8 +115,7 @@ pub fn block<'a>(
     let Built { assembled, soup, orient, mut report } = Built::new(operand.mesh, base, options, progress)?;
     let given = Operand { negative: operand.negative, ..Operand::from(&assembled.mesh) };
     let made = boolean([given], &Expression::Operand(0), &Options { orient, ..*options }, progress)?;
-    let negative = operand.negative.map(Operand::from);
-    let operands: Vec<Operand<'_>> = [Operand { negative: None, ..operand }].into_iter().chain(negative).collect();
+    let (operands, _) = Operand::with_negatives([operand], &Expression::Operand(0));
     let mut outcome = assembled.told(made, &operands);
     report.volume = outcome.solid.validity().volume;
     if let Some(own) = outcome.report.orient.first_mut() {
@@ -235,10 +234,7 @@ fn open_edges(mesh: &TriMesh) -> Vec<u32> {
 
 impl Built {
     fn new(mesh: &TriMesh, base: Base, options: &Options, progress: &Progress) -> Result<Self, BlockError> {
-        mesh.check().map_err(|error| BooleanError::Index { operand: 0, error })?;
-        if let Some(triangle) = mesh.first_not_finite() {
-            return Err(BooleanError::NotFinite { operand: 0, triangle }.into());
-        }
+        BooleanError::check(0, mesh)?;
         let mut soup = Soup::of(&[mesh], OrientMode::Auto, progress)?;
         let ground = Ground::new(&soup, base)?;
         let (turned, sheets) = turn(&mut soup, ground)?;

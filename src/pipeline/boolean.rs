@@ -43,10 +43,7 @@ pub fn boolean<'a>(
         return Err(BooleanError::MissingOperand { operand: needed - 1, given });
     }
     for (operand, given) in operands.iter().enumerate() {
-        given.mesh.check().map_err(|error| BooleanError::Index { operand, error })?;
-        if let Some(triangle) = given.mesh.first_not_finite() {
-            return Err(BooleanError::NotFinite { operand, triangle });
-        }
+        BooleanError::check(operand, given.mesh)?;
     }
     let ordered = Ordered::new(operands, &expression);
     evaluate(&ordered.operands, &ordered.expression, options, progress)

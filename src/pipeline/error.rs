@@ -4,7 +4,7 @@ use super::{LatticeError, NothingEnclosed};
 use crate::backend::BackendError;
 use crate::digits;
 use crate::ldi::MAX_TRIANGLES;
-use crate::mesh::{IndexError, NotSolid, SolidError};
+use crate::mesh::{IndexError, NotSolid, SolidError, TriMesh};
 use crate::morphology::OffsetError;
 use crate::progress::Stopped;
 use crate::sdf::exact::ExactError;
@@ -113,6 +113,17 @@ pub enum BooleanError {
     /// What was made is not a valid solid. The fit sees to it that it is; without one, it may not be.
     #[error(transparent)]
     NotSolid(Box<NotSolid>),
+}
+
+impl BooleanError {
+    /// Refuses an operand whose triangles have corners that are not there, or are no numbers.
+    pub(super) fn check(operand: usize, mesh: &TriMesh) -> Result<(), Self> {
+        mesh.check().map_err(|error| Self::Index { operand, error })?;
+        match mesh.first_not_finite() {
+            Some(triangle) => Err(Self::NotFinite { operand, triangle }),
+            None => Ok(()),
+        }
+    }
 }
 
 impl From<SoupError> for BooleanError {

@@ -8,6 +8,7 @@ use rustc_hash::FxHashSet;
 
 use super::assembled::Assembled;
 use super::frame::Frame;
+use super::holes::WIDE;
 use super::plan::area;
 use super::{
     BooleanError, HoleReport, LidShape, NothingEnclosed, Operand, Options, Outcome, OuterReport, Plan, Precision,
@@ -23,9 +24,6 @@ use crate::orient::{OrientMode, OrientReport, PatchId};
 use crate::outer::{Part, Parts, Reach, ReachError, judge, sights};
 use crate::progress::{Progress, Stage, Stopped};
 use crate::survey::{Soup, SoupError};
-
-/// A rim whose diameter is more than this part of the diagonal of what it bounds is where a body was cut off, and is closed flat by [`Style::Auto`].
-const WIDE: f64 = 0.25;
 
 /// Voxels to the thickness of a sheet, at least.
 const ACROSS: f64 = 5.0;
@@ -103,7 +101,7 @@ pub fn outer<'a>(
 ) -> Result<Outcome, OuterError> {
     let operand: Operand<'a> = operand.into();
     let (given, solid) = (operand.mesh, &options.solid);
-    check(given)?;
+    BooleanError::check(0, given)?;
     let frame = Frame::of(&[given], &solid.surface());
     let found = Found::new(&frame.local(given), options, progress);
     let mut found = found.map_err(|mut error| {
@@ -117,8 +115,7 @@ pub fn outer<'a>(
     let (mut assembled, lids) = found.closed(solid, progress)?;
     frame.mesh(&mut assembled.mesh);
     frame.mesh(&mut found.sheets);
-    let negative = operand.negative.map(Operand::from);
-    let operands: Vec<Operand<'_>> = [Operand { negative: None, ..operand }].into_iter().chain(negative).collect();
+    let (operands, _) = Operand::with_negatives([operand], &Expression::Operand(0));
     let mut left = Vec::new();
     let outcome = match assembled.mesh.triangles.is_empty() {
         true => None,
@@ -169,7 +166,7 @@ fn widest_rim(soup: &Soup, triangles: &[u32]) -> f64 {
 /// # Errors
 /// Those of [`outer`] that come before anything is made.
 pub fn plan_outer(mesh: &TriMesh, options: &OuterOptions) -> Result<Plan, OuterError> {
-    check(mesh)?;
+    BooleanError::check(0, mesh)?;
     let (lattice, _, cost) = Reach::plan(mesh, options.ball)?;
     let made = plan([mesh], &options.solid)?;
     Ok(Plan {
@@ -181,14 +178,6 @@ pub fn plan_outer(mesh: &TriMesh, options: &OuterOptions) -> Result<Plan, OuterE
         seconds: made.seconds + cost.seconds,
         ..made
     })
-}
-
-fn check(mesh: &TriMesh) -> Result<(), BooleanError> {
-    mesh.check().map_err(|error| BooleanError::Index { operand: 0, error })?;
-    match mesh.first_not_finite() {
-        Some(triangle) => Err(BooleanError::NotFinite { operand: 0, triangle }),
-        None => Ok(()),
-    }
 }
 
 /// The union of the solid and of the sheets made thick.
@@ -320,13 +309,11 @@ impl Found {
         let made: Vec<Option<Lid>> = made.collect::<Result<_, Stopped>>()?;
         // A rim without a lid is left to the repair.
         for (rim, lid) in rims.iter().zip(made).filter_map(|(rim, lid)| Some((rim, lid?))) {
-            let new = (assembled.mesh.positions.len() - known) as u32;
-            let number = |v: u32| if (v as usize) < known { v } else { v + new };
             let first = assembled.mesh.triangles.len();
-            assembled.mesh.triangles.extend(lid.triangles.iter().map(|corners| corners.map(number)));
+            let others = assembled.mesh.positions.len() - known;
+            assembled.mesh.triangles.extend(lid.triangles_after(known, others));
             assembled.mesh.positions.extend_from_slice(&lid.positions);
-            let shape = if lid.style == Style::Smooth { LidShape::Smooth } else { LidShape::Flat };
-            let hole = HoleReport::of(lids.len() + 1, rim, Ok((&lid, shape)));
+            let hole = HoleReport::of(lids.len() + 1, rim, Ok((&lid, LidShape::of(&lid))));
             lids.push(Closing { hole, triangles: first..assembled.mesh.triangles.len() });
         }
         assembled.own.resize(assembled.mesh.triangles.len(), TriangleSource::Closed);

@@ -79,7 +79,7 @@ pub fn zip(mesh: &TriMesh, tolerance: Option<f64>, progress: &Progress) -> Resul
     progress.check()?;
     let Some(inserted) = work.insert(&open, tolerance) else { return Ok(None) };
     progress.check()?;
-    let open = work.open();
+    let open = if inserted > 0 { work.open() } else { open };
     let Some((merged, farthest)) = work.merge(&open, tolerance) else { return Ok(None) };
     (report.inserted, report.merged, report.farthest) = (inserted, merged, farthest);
     report.open_after = work.open().len();

@@ -98,13 +98,17 @@ fn a_box_without_a_side_is_twelve_triangles_again() {
 }
 
 /// A ring with a gap that is narrow against its tube: the rims at both ends face each other.
-#[test]
-fn what_faces_itself_over_a_gap_is_joined() {
+fn torn_ring() -> TriMesh {
     let tube = torus(96, 48);
     let narrow = |p: &DVec3| p.x > 0.0 && p.y.abs() < 0.1;
     let keep = |t: &usize| !narrow(&(tube.corners(*t).iter().sum::<DVec3>() / 3.0));
     let triangles = (0..tube.triangles.len()).filter(keep).map(|t| tube.triangles[t]).collect();
-    let open = TriMesh { positions: tube.positions.clone(), triangles }.welded();
+    TriMesh { positions: tube.positions.clone(), triangles }.welded()
+}
+
+#[test]
+fn what_faces_itself_over_a_gap_is_joined() {
+    let open = torn_ring();
     let outcome = repaired(&open, &options(Style::Auto));
     let found = state(&outcome.solid, true);
     let holes = &outcome.report.holes;
@@ -129,12 +133,7 @@ fn closings(outcome: &Outcome) -> Vec<HoleClosing> {
 /// The one beside the other: a hole that a lid closes keeps it where others need voxels.
 #[test]
 fn voxels_close_only_the_holes_that_no_lid_closes() {
-    let tube = torus(96, 48);
-    let narrow = |p: &DVec3| p.x > 0.0 && p.y.abs() < 0.1;
-    let keep = |t: &usize| !narrow(&(tube.corners(*t).iter().sum::<DVec3>() / 3.0));
-    let triangles = (0..tube.triangles.len()).filter(keep).map(|t| tube.triangles[t]).collect();
-    let torn = TriMesh { positions: tube.positions.clone(), triangles }.welded();
-    let open = without(&torn, DVec3::new(-1.0, 0.0, 0.3), 0.12);
+    let open = without(&torn_ring(), DVec3::new(-1.0, 0.0, 0.3), 0.12);
     let outcome = repaired(&open, &options(Style::Auto));
     let voxels = HoleClosing::Voxels(NotLidded::NoHole);
     assert_eq!(closings(&outcome), [voxels, voxels, HoleClosing::Lid(LidShape::Smooth)]);

@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use super::patches::{Patches, place};
 use crate::fill::{FillOptions, Rim, Style, Surroundings, lid};
-use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
 use crate::progress::{Progress, Stopped};
 use crate::survey::Soup;
@@ -45,7 +44,7 @@ impl<'a> Judge<'a> {
             for rim in rims {
                 let patch = patches.beside(rim);
                 if own[patch].is_none() {
-                    let part = part_of(mesh, &patches.triangles[patch]);
+                    let part = mesh.submesh(&patches.triangles[patch]).mesh;
                     own[patch] = Some(WindingTree::new(&part, 0..part.triangles.len(), progress)?);
                 }
             }
@@ -89,11 +88,4 @@ impl<'a> Judge<'a> {
         let within = all[0] - own[0] > WITHIN && all[1] - own[1] > WITHIN;
         parted && all[0] > 0.5 && (all[1] < 0.5 || within)
     }
-}
-
-/// Some triangles of a mesh, with the vertices of all.
-fn part_of(mesh: &TriMesh, triangles: &[u32]) -> TriMesh {
-    let corners = triangles.iter().flat_map(|&t| mesh.corners(t as usize));
-    let positions = corners.collect();
-    TriMesh { positions, triangles: (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect() }
 }

@@ -8,7 +8,7 @@ use crate::progress::{Progress, Stopped};
 
 /// A rim whose diameter is more than this part of its patch's diagonal is where the body was cut off, rather than a hole in it: by [`Style::Auto`] it is closed
 /// flat. Smooth lids there are domes: over the lion's back one of 15 % of its volume, over the camel's neck one of 7 %.
-const WIDE: f64 = 0.25;
+pub(in crate::pipeline) const WIDE: f64 = 0.25;
 
 /// A wide rim that lies farther from its plane than this part of its diameter has no flat lid: the few triangles over the camel's neck (6 %) are 1.2 % of
 /// its volume away from where winding numbers have the lid.
@@ -77,7 +77,6 @@ impl Maker<'_> {
 
 impl From<Lid> for Made {
     fn from(lid: Lid) -> Self {
-        let shape = if lid.style == Style::Smooth { LidShape::Smooth } else { LidShape::Flat };
-        Self { lid, shape }
+        Self { shape: LidShape::of(&lid), lid }
     }
 }

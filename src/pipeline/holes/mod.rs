@@ -6,8 +6,11 @@ mod open;
 mod patches;
 mod refuse;
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
+pub(super) use self::maker::WIDE;
 pub use self::open::{NotOpened, Opened};
 
 use self::judge::Judge;
@@ -23,8 +26,8 @@ use crate::vote::VoteRule;
 /// At most so many rims are closed by lids.
 const MOST_RIMS: usize = 5000;
 
-#[derive(Default)]
 /// The rims of a mesh, the longest first, and for each a lid, or why it has none.
+#[derive(Default)]
 pub(super) struct Plan {
     rims: Vec<Rim>,
     lids: Vec<Result<Made, NotLidded>>,
@@ -35,10 +38,7 @@ pub(super) struct Plan {
 /// # Errors
 /// [`BooleanError`]: the mesh has no triangle, or one whose vertices are none; interrupted.
 pub fn holes(mesh: &TriMesh, options: &Options, progress: &Progress) -> Result<Vec<HoleReport>, BooleanError> {
-    mesh.check().map_err(|error| BooleanError::Index { operand: 0, error })?;
-    if let Some(triangle) = mesh.first_not_finite() {
-        return Err(BooleanError::NotFinite { operand: 0, triangle });
-    }
+    BooleanError::check(0, mesh)?;
     let soup = Soup::of(&[mesh], options.orient, progress)?;
     Ok(planned(&soup, options, progress)?.reports())
 }
@@ -102,13 +102,13 @@ impl Plan {
     }
 
     /// The soup with the lids, whose triangles come after those of the operand.
-    pub fn over(&self, soup: &Soup) -> Soup {
+    pub fn over<'a>(&self, soup: &'a Soup) -> Cow<'a, Soup> {
         if self.is_empty() {
-            return soup.clone();
+            return Cow::Borrowed(soup);
         }
         let (lids, of) = self.lids_of(&soup.mesh);
         let of: Vec<(u32, u32)> = of.iter().map(|&n| (n as u32 + 1, self.rims[n].vertices[0])).collect();
-        soup.with_lids(&lids, &of)
+        Cow::Owned(soup.with_lids(&lids, &of))
     }
 
     /// All lids, in numbers that follow those of the mesh's vertices, and for each triangle its rim.
@@ -117,9 +117,7 @@ impl Plan {
         let (mut lids, mut of) = (TriMesh::default(), Vec::new());
         for (n, lid) in self.lids.iter().enumerate() {
             let Ok(Made { lid, .. }) = lid else { continue };
-            let new = lids.positions.len() as u32;
-            let number = |v: u32| if (v as usize) < known { v } else { v + new };
-            lids.triangles.extend(lid.triangles.iter().map(|corners| corners.map(number)));
+            lids.triangles.extend(lid.triangles_after(known, lids.positions.len()));
             lids.positions.extend_from_slice(&lid.positions);
             of.extend(std::iter::repeat_n(n, lid.triangles.len()));
         }

@@ -1,7 +1,7 @@
 //! Holes that are left open after all.
 
-use super::super::{HoleClosing, HoleReport, Outcome, TriangleSource};
 use crate::mesh::TriMesh;
+use crate::pipeline::{HoleClosing, HoleReport, Outcome, TriangleSource};
 
 /// A mesh of which some holes are open again, so that it is no solid.
 #[derive(Debug, Clone)]
@@ -87,17 +87,6 @@ impl Outcome {
         (self.report.triangles.made_up, self.report.closed_triangles) = (left, left);
         let numbers = (0u32..).zip(&self.sources);
         let triangles: Vec<u32> = numbers.filter(|(_, source)| !goes(source)).map(|(t, _)| t).collect();
-        let mut number = vec![None; self.solid.positions.len()];
-        let mut mesh = TriMesh::default();
-        for &t in &triangles {
-            let corners = self.solid.triangles[t as usize].map(|v| {
-                *number[v as usize].get_or_insert_with(|| {
-                    mesh.positions.push(self.solid.positions[v as usize]);
-                    mesh.positions.len() as u32 - 1
-                })
-            });
-            mesh.triangles.push(corners);
-        }
-        Opened { mesh, triangles }
+        Opened { mesh: self.solid.submesh(&triangles).mesh, triangles }
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::fill::{Lid, Rim};
+use crate::fill::{Lid, Rim, Style};
 
 /// A hole, and what closes it. Model units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -54,6 +54,13 @@ pub enum LidShape {
     Smooth,
     /// Along the level ½ of the winding number.
     Level,
+}
+
+impl LidShape {
+    /// That of a lid made in one of the styles.
+    pub(crate) fn of(lid: &Lid) -> Self {
+        if lid.style == Style::Smooth { Self::Smooth } else { Self::Flat }
+    }
 }
 
 /// Why a rim has no lid.
