@@ -50,9 +50,12 @@ SAMPLES = 10_000
 
 
 def write_obj(path, points, faces):
-    with open(path, "w", encoding="ascii") as out:
+    # A run that is interrupted leaves no half of a file that the next one would take for the whole.
+    part = Path(f"{path}.part")
+    with open(part, "w", encoding="ascii") as out:
         out.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in points.tolist())
         out.writelines(f"f {a} {b} {c}\n" for a, b, c in (faces + 1).tolist())
+    part.rename(path)
 
 
 def welded(points, faces):

@@ -24,9 +24,9 @@ pub(crate) struct FlatPoints {
 }
 
 impl FlatPoints {
-    /// Points seen along `axis`; `mirrored`: from its other end, so that sheets that face there run counter-clockwise, too.
-    pub(crate) fn new(points: &Points, numbers: &[u32], axis: usize, mirrored: bool) -> Self {
-        let (i, j) = if mirrored { ((axis + 2) % 3, (axis + 1) % 3) } else { ((axis + 1) % 3, (axis + 2) % 3) };
+    /// Points seen from the tip of `axis`.
+    pub(crate) fn new(points: &Points, numbers: &[u32], axis: usize) -> Self {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let exact = |&id: &u32| {
             let exact = points.exact(id);
             Flat { x: exact.at[i], y: exact.at[j], w: exact.w, whole: points.vertex(id).is_some() }

@@ -32,7 +32,7 @@ pub(crate) fn merge(
     let corners: Vec<[u32; 3]> = faces.iter().map(|face| face.corners).collect();
     let planes = Planes::of(refined, &faces, &corners);
     let region: Vec<Region> =
-        faces.iter().map(|face| (planes.first[face.facet as usize], face.over, class(face.cover.triangle))).collect();
+        faces.iter().map(|face| (planes.first(face), planes.over(refined, face), class(face.cover.triangle))).collect();
     let creases = creases(refined, &corners, &region);
     let is_whole = |face: &Face| refined.is_whole(face.facet);
     // The border half-edges of cut sheets, by where they start. A region that lies on both sides of an edge has two of them at each point.
@@ -75,7 +75,7 @@ pub(crate) fn merge(
         match is_whole(&same[0]) {
             true => result.extend_from_slice(same),
             false => {
-                let sheet = of_sheet.remove(&planes.first[same[0].facet as usize]);
+                let sheet = of_sheet.remove(&planes.first(&same[0]));
                 sheet.into_iter().for_each(|n| result.extend_from_slice(&merged[n]));
             }
         }
@@ -97,14 +97,14 @@ impl Planes {
         let mut union = Union::new(facets.len());
         let is_one = |a: &Face, b: &Face| {
             let (p, q) = (facets.plane(a.facet), facets.plane(b.facet));
-            let axis = p.axis();
-            (p.normal[axis] > 0) == (q.normal[axis] > 0) && facets.places(b.facet).iter().all(|&at| p.value(at) == 0)
+            let on_one_side = (a.over == b.over) == p.faces_as(&q);
+            on_one_side && facets.places(b.facet).iter().all(|&at| p.value(at) == 0)
         };
         Edges::new(corners, refined.points.len()).each(|edge| {
             let mut beside = edge.halves().map(|half| &faces[half as usize / 3]);
             let (Some(a), Some(b), None) = (beside.next(), beside.next(), beside.next()) else { return };
             let cut = |face: &Face| !refined.is_whole(face.facet);
-            if a.facet != b.facet && a.over == b.over && cut(a) && cut(b) && is_one(a, b) {
+            if a.facet != b.facet && cut(a) && cut(b) && is_one(a, b) {
                 union.join(a.facet, b.facet);
             }
         });
@@ -112,6 +112,18 @@ impl Planes {
         let mut several = vec![false; first.len()];
         (0..).zip(&first).filter(|&(f, &first)| f != first).for_each(|(_, &first)| several[first as usize] = true);
         Self { first, several }
+    }
+
+    /// The facet that stands for that of a face.
+    fn first(&self, face: &Face) -> u32 {
+        self.first[face.facet as usize]
+    }
+
+    /// Whether the solid lies in front of the facet that stands for that of a face.
+    fn over(&self, refined: &Refined, face: &Face) -> bool {
+        let first = self.first(face);
+        let plane = |facet: u32| refined.facets.plane(facet);
+        face.over == (first == face.facet || plane(first).faces_as(&plane(face.facet)))
     }
 }
 
@@ -199,8 +211,7 @@ fn triangulated(refined: &Refined, planes: &Planes, borders: &[Border], contacts
     // What lies left of an edge, as the facet is seen: regions over it run the other way round.
     let mut left: FxHashMap<[u32; 2], (Region, Cover)> = FxHashMap::default();
     for &(region, [u, v], cover) in borders {
-        let [u, v] = [u, v].map(|p| layout.local(p));
-        left.insert(if region.1 { [v, u] } else { [u, v] }, (region, cover));
+        left.insert(layout.local_edge(if region.1 { [v, u] } else { [u, v] }), (region, cover));
     }
     let mut edges: Vec<[u32; 2]> = left.keys().map(|&[u, v]| [u.min(v), u.max(v)]).collect();
     edges.sort_unstable();

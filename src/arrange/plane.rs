@@ -41,6 +41,12 @@ impl Plane {
         (0..3).max_by_key(|&k| (size[k], 3 - k)).unwrap_or(0)
     }
 
+    /// Whether its normal points the same way as that of another one that holds the same points.
+    pub(crate) fn faces_as(&self, other: &Self) -> bool {
+        let axis = self.axis();
+        (self.normal[axis] > 0) == (other.normal[axis] > 0)
+    }
+
     /// `normal` · p - `offset` at a lattice point.
     #[inline]
     pub(crate) fn value(&self, p: [i32; 3]) -> i128 {

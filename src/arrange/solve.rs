@@ -49,7 +49,7 @@ pub fn arrange(
 ) -> Result<Arranged, ArrangeError> {
     match attempted(mesh, operands, options, progress) {
         // On the lattice more triangles may touch than where they were looked at: then only one of two neighbours is cut at their edge.
-        Err(ArrangeError::Open { .. }) if !options.suspects.is_empty() => {
+        Err(ArrangeError::Open { cut: 1.., .. }) if options.suspects.contains(&false) => {
             attempted(mesh, operands, &ArrangeOptions { suspects: &[], ..*options }, progress)
         }
         result => result,

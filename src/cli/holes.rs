@@ -116,6 +116,10 @@ fn closing(hole: &HoleReport) -> String {
         HoleClosing::Lid(LidShape::Flat) => format!("flat, {}", triangles()),
         HoleClosing::Lid(LidShape::Smooth) => format!("smooth, {}", triangles()),
         HoleClosing::Lid(LidShape::Level) => format!("along the winding number ½, {}", triangles()),
+        HoleClosing::Lid(LidShape::Band) => match hole.joined_with {
+            Some(other) => format!("joined with hole {other}, {}", triangles()),
+            None => format!("joined with another, {}", triangles()),
+        },
         HoleClosing::Voxels(why) => format!("from voxels, since {why}"),
         HoleClosing::LeftOpen => "left open".into(),
     }

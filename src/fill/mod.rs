@@ -17,6 +17,7 @@
 //!
 //! Everything else it closes smoothly. Where edges that are bent by more than 15°, much more than what is beside them, run into the hole and out of it, they are continued through the lid.
 
+mod band;
 mod boundary;
 mod creases;
 mod fair;
@@ -35,6 +36,7 @@ mod tests;
 use glam::DVec3;
 use serde::Serialize;
 
+pub use band::band;
 pub use level::level_lid;
 pub(crate) use region::region;
 pub use rims::{Rim, rims};
@@ -252,6 +254,13 @@ fn of_three(around: &Surroundings<'_>, boundary: &Boundary, rim: &Rim, style: St
     let area = refine::area(triangle.map(|v| around.mesh().positions[v as usize]));
     let style = if style == Style::Auto { Style::Flat } else { style };
     Ok(Lid { positions: Vec::new(), triangles: vec![triangle], style, area })
+}
+
+/// Whether a rim of few vertices lies in one plane with a triangle beside it that goes on there: then a piece of a flat side is missing, whatever is open elsewhere.
+pub(crate) fn is_gap_in_plane(around: &Surroundings<'_>, rim: &Rim) -> bool {
+    let few = rim.vertices.len() <= FEW && rim.flatness <= IN_PLANE * rim.diameter;
+    few && Boundary::new(around, rim)
+        .is_ok_and(|boundary| (0..boundary.len()).any(|k| boundary.normal_beside(k).dot(rim.plane.normal) > LEVEL))
 }
 
 /// The flat lid where the rim has one; with [`Style::Auto`] only where the rule asks for it.

@@ -41,7 +41,8 @@ impl Precision {
         }
     }
 
-    fn of_mesh(self, mesh: &TriMesh) -> Cow<'_, TriMesh> {
+    /// The mesh with coordinates as the result may have them.
+    pub(super) fn of_mesh(self, mesh: &TriMesh) -> Cow<'_, TriMesh> {
         match self {
             Self::Double => Cow::Borrowed(mesh),
             Self::Single => {
@@ -96,6 +97,15 @@ impl Apart {
         self.shells.list.iter().enumerate().map(|(n, shell)| (self.fate(n), shell))
     }
 
+    /// For each shell whether the result has it the other way round than the soup; `None` unless all of them are the result's surface.
+    pub(super) fn all_bound(&self) -> Option<Vec<bool>> {
+        let over = |(fate, _)| match fate {
+            Fate::Bounds { turned, reversed } => Some(turned != reversed),
+            Fate::Open | Fate::Inside { .. } => None,
+        };
+        self.fates().map(over).collect()
+    }
+
     /// The number of operands.
     pub(super) fn operands(&self) -> usize {
         self.in_soup.len()
@@ -123,7 +133,12 @@ impl Apart {
 
     /// Whether each shell that is not decided runs along each of its edges one way as often as the other.
     pub(super) fn open_balances(&self) -> bool {
-        self.fates().all(|(fate, shell)| !fate.is_open() || shell.balanced)
+        (0..self.operands()).all(|operand| self.balances(operand))
+    }
+
+    /// Whether each shell of an operand that is not decided runs along each of its edges one way as often as the other.
+    pub(super) fn balances(&self, operand: usize) -> bool {
+        self.fates().all(|(fate, shell)| shell.operand != operand || !fate.is_open() || shell.balanced)
     }
 
     /// How many triangles touch others.

@@ -6,8 +6,9 @@ use super::stages::Stages;
 use super::{BooleanError, Draft, Method, NothingEnclosed, Precision, TriangleSource};
 use crate::arrange::{ArrangeError, ArrangeOptions, Arranged, arrange};
 use crate::ldi::Operands;
-use crate::mesh::TriMesh;
-use crate::progress::Stage;
+use crate::mesh::edges::Edges;
+use crate::mesh::{TriMesh, intersections_with};
+use crate::progress::{Progress, Stage, Stopped};
 use crate::survey::Soup;
 
 /// What came of the exact way.
@@ -18,7 +19,7 @@ pub(super) enum Exact {
     Open {
         /// For each operand whether it is closed.
         closed: Vec<bool>,
-        /// Whether triangles cross each other besides, away from rims.
+        /// Whether triangles may cross each other besides, away from rims.
         crosses: bool,
     },
     /// It is not to be gone, or leads nowhere.
@@ -70,6 +71,27 @@ impl Pile {
     }
 }
 
+/// What there is to say of a soup with a rim at which a triangle touches nothing: cuts do not close that. It is not looked for crossings elsewhere.
+/// `None` where there is no such rim.
+fn surely_open(rest: &Soup, apart: &Apart, progress: &Progress) -> Result<Option<Exact>, Stopped> {
+    let mesh = &rest.mesh;
+    let mut at_rim = vec![false; mesh.triangles.len()];
+    Edges::new(&mesh.triangles, mesh.positions.len()).each(|edge| {
+        if edge.count() == 1 {
+            edge.halves().for_each(|half| at_rim[half as usize / 3] = true);
+        }
+    });
+    if !at_rim.contains(&true) {
+        return Ok(None);
+    }
+    let mut free = at_rim.clone();
+    let touching = intersections_with(mesh, &at_rim, progress)?;
+    touching.iter().flatten().for_each(|&t| free[t as usize] = false);
+    let closed = (0..rest.operands.count()).map(|operand| apart.balances(operand));
+    let open = Exact::Open { closed: closed.collect(), crosses: free == at_rim };
+    Ok(free.contains(&true).then_some(open))
+}
+
 impl Job<'_> {
     /// The exact result made of what stands and of the shells that touch.
     pub(super) fn exact(
@@ -85,9 +107,15 @@ impl Job<'_> {
             return Ok(Exact::None);
         }
         stages.begin(Stage::Arrange)?;
-        let mut tried = self.arranged(&Pile::given(operands, apart));
         // Neighbours that face opposite ways, or copies, may be all that is wrong.
         let changed = rest.reports.iter().any(|r| r.flipped_in_patches + r.duplicates_dropped + r.both_sided > 0);
+        if !changed
+            && method == Method::Auto
+            && let Some(open) = surely_open(rest, apart, self.progress)?
+        {
+            return Ok(open);
+        }
+        let mut tried = self.arranged(&Pile::given(operands, apart));
         if changed && matches!(tried, Err(ArrangeError::Open { .. })) {
             tried = self.arranged(&Pile::oriented(rest));
         }

@@ -1,12 +1,13 @@
 //! Holes closed from their rims alone: without rays and voxels, so that all that is not a lid stays what it is.
 
-use super::apart::Standing;
+use super::apart::{Apart, Standing};
 use super::exact::{Exact, Pile};
 use super::holes::Plan;
 use super::rebuild::Job;
 use super::stages::Stages;
-use super::{BooleanError, TriangleSource};
-use crate::arrange::ArrangeError;
+use super::{BooleanError, Draft, TriangleSource};
+use crate::arrange::{ArrangeError, ArrangeReport};
+use crate::mesh::Submesh;
 use crate::progress::Stage;
 use crate::survey::Soup;
 
@@ -23,11 +24,17 @@ impl Job<'_> {
             return Ok(Exact::None);
         }
         let closed = plan.over(rest);
-        let source = |t: u32| (t, TriangleSource::in_soup(&closed, t));
-        let mut pile = Pile::default();
-        pile.add(&closed.mesh, (0..closed.mesh.triangles.len() as u32).map(source));
         stages.begin(Stage::Arrange)?;
-        let mut draft = match self.arranged(&pile) {
+        let draft = match self.untouched(&closed)? {
+            Some(draft) => Ok(draft),
+            None => {
+                let source = |t: u32| (t, TriangleSource::in_soup(&closed, t));
+                let mut pile = Pile::default();
+                pile.add(&closed.mesh, (0..closed.mesh.triangles.len() as u32).map(source));
+                self.arranged(&pile)
+            }
+        };
+        let mut draft = match draft {
             Ok(draft) => self.simplified(draft.cleaned(rest))?,
             Err(ArrangeError::Stopped(stopped)) => return Err(stopped.into()),
             Err(_) => return Ok(Exact::None),
@@ -35,5 +42,32 @@ impl Job<'_> {
         draft.report.closed_triangles = draft.sources.iter().filter(|source| source.is_made_up()).count();
         draft.report.holes = plan.reports();
         self.beside_standing(draft, standing)
+    }
+
+    /// A closed soup of one operand as it is, facing outwards, where no triangle of it touches another one and all of it is the result's surface: then there is
+    /// nothing to arrange.
+    fn untouched(&self, closed: &Soup) -> Result<Option<Draft>, BooleanError> {
+        let apart = Apart::find(closed, self.expression, self.options, self.progress)?;
+        let Some(over) = apart.all_bound() else { return Ok(None) };
+        let mut mesh = self.options.precision.of_mesh(&closed.mesh).into_owned();
+        for (t, triangle) in mesh.triangles.iter_mut().enumerate() {
+            if over[apart.shells.of[t] as usize] {
+                triangle.swap(1, 2);
+            }
+        }
+        let turned = over.iter().filter(|over| **over).count();
+        let turned_triangles = (0..mesh.triangles.len()).filter(|&t| over[apart.shells.of[t] as usize]).count();
+        let report = ArrangeReport {
+            triangles: mesh.triangles.len(),
+            cells: apart.shells.list.len() + 1,
+            turned: vec![turned],
+            turned_triangles: vec![turned_triangles],
+            ..ArrangeReport::default()
+        };
+        let sources = (0..mesh.triangles.len() as u32).map(|t| TriangleSource::in_soup(closed, t)).collect();
+        let mesh = Submesh::of(&mesh.positions, mesh.triangles).mesh;
+        let mut draft = Draft { mesh, sources, ..Draft::without_voxels(self.h) };
+        draft.report.exact = Some(report);
+        Ok(Some(draft))
     }
 }

@@ -83,10 +83,6 @@ fn a_box_without_a_side_is_twelve_triangles_again() {
     let whole = cuboid(DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0));
     for missing in 0..whole.triangles.len() {
         for count in [1, 2] {
-            // Two opposite sides that are open in part, and nearer to each other than they are wide: there voxels decide.
-            if (missing, count) == (11, 2) {
-                continue;
-            }
             let mut open = whole.clone();
             open.triangles.rotate_left(missing);
             open.triangles.truncate(whole.triangles.len() - count);
@@ -109,11 +105,79 @@ fn torn_ring() -> TriMesh {
 #[test]
 fn what_faces_itself_over_a_gap_is_joined() {
     let open = torn_ring();
+    let mut outcome = repaired(&open, &options(Style::Auto));
+    check_kept(&open, &outcome);
+    let band = HoleClosing::Lid(LidShape::Band);
+    assert_eq!(closings(&outcome), [band, band]);
+    let partners: Vec<_> = outcome.report.holes.iter().map(|hole| hole.joined_with).collect();
+    assert_eq!(partners, [Some(2), Some(1)]);
+    assert_eq!(state(&outcome.solid, true).bodies, 1);
+    let off = (volume(&outcome.solid) / volume(&torus(96, 48)) - 1.0).abs();
+    assert!(off < 2e-3, "{off}");
+    // A band goes with either of its rims.
+    let opened = outcome.open(&[2]).expect("it is there");
+    assert_eq!(opened.mesh.triangles.len(), open.triangles.len());
+    assert_eq!(closings(&outcome), [HoleClosing::LeftOpen; 2]);
+}
+
+/// A pipe whose wall has lost both ends, with a hole in it besides: its two sides are apart, and the inner one seems to face inwards.
+#[test]
+fn a_wall_that_has_lost_its_ends_gets_them_back() {
+    let (sides, rows) = (48u32, 12u32);
+    let tube = |radius: f64, outward: bool| {
+        let at = |n: u32, row: u32| {
+            let turn = f64::from(n) / f64::from(sides) * std::f64::consts::TAU;
+            DVec3::new(radius * turn.cos(), radius * turn.sin(), 3.0 * f64::from(row) / f64::from(rows))
+        };
+        let positions = (0..=rows).flat_map(|row| (0..sides).map(move |n| at(n, row))).collect();
+        let quad = |row: u32, n: u32| {
+            let [a, b] = [row * sides + n, row * sides + (n + 1) % sides];
+            let [c, d] = [b + sides, a + sides];
+            if outward { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] }
+        };
+        let triangles = (0..rows).flat_map(|row| (0..sides).flat_map(move |n| quad(row, n))).collect();
+        TriMesh { positions, triangles }
+    };
+    let mut pipe = tube(1.0, true);
+    pipe.append(&tube(0.8, false));
+    let area = f64::from(sides) / 2.0 * (std::f64::consts::TAU / f64::from(sides)).sin();
+    let truth = area * (1.0 - 0.64) * 3.0;
+    for (open, holes) in [(pipe.clone(), 4), (without(&pipe, DVec3::new(1.0, 0.0, 1.6), 0.1), 5)] {
+        let outcome = repaired(&open, &options(Style::Auto));
+        check_kept(&open, &outcome);
+        let bands = closings(&outcome).iter().filter(|how| **how == HoleClosing::Lid(LidShape::Band)).count();
+        assert_eq!((bands, outcome.report.holes.len()), (4, holes), "{:?}", outcome.report.holes);
+        let off = (volume(&outcome.solid) / truth - 1.0).abs();
+        assert!(off < if holes == 4 { 1e-12 } else { 1e-3 }, "{off}");
+    }
+}
+
+/// A ball in three wedges with gaps between them: each rim faces two others, and no band joins three.
+fn wedges() -> TriMesh {
+    let whole = ball(4, |_| 1.0);
+    let middle = |t: usize| whole.corners(t).iter().sum::<DVec3>() / 3.0;
+    let near = |p: DVec3| {
+        (0..3).any(|k| {
+            let turn = f64::from(k) * std::f64::consts::TAU / 3.0 + 0.3;
+            let (along, across) =
+                (p.dot(DVec3::new(turn.cos(), turn.sin(), 0.0)), p.dot(DVec3::new(-turn.sin(), turn.cos(), 0.0)));
+            along > -0.06 && across.abs() < 0.06
+        })
+    };
+    let triangles = (0..whole.triangles.len()).filter(|&t| !near(middle(t))).map(|t| whole.triangles[t]).collect();
+    TriMesh { positions: whole.positions.clone(), triangles }.welded()
+}
+
+#[test]
+fn three_that_face_each_other_are_closed_from_voxels() {
+    let open = wedges();
     let outcome = repaired(&open, &options(Style::Auto));
     let found = state(&outcome.solid, true);
     let holes = &outcome.report.holes;
-    assert!(holes.len() == 2 && found.bodies == 1, "{holes:?}");
-    assert!(holes.iter().all(|hole| hole.closed_by == HoleClosing::Voxels(NotLidded::NoHole)), "{holes:?}");
+    assert!(holes.len() == 3 && found.bodies == 1, "{holes:?}");
+    assert!(holes.iter().all(|hole| matches!(hole.closed_by, HoleClosing::Voxels(_))), "{holes:?}");
+    let off = (volume(&outcome.solid) / volume(&ball(4, |_| 1.0)) - 1.0).abs();
+    assert!(off < 0.01, "{off}");
 }
 
 #[test]
@@ -130,13 +194,17 @@ fn closings(outcome: &Outcome) -> Vec<HoleClosing> {
     outcome.report.holes.iter().map(|hole| hole.closed_by).collect()
 }
 
-/// The one beside the other: a hole that a lid closes keeps it where others need voxels.
+/// The one beside the other: a hole that a lid closes keeps it where others need voxels. An open box lies where the band between the ends of the ring would.
 #[test]
 fn voxels_close_only_the_holes_that_no_lid_closes() {
-    let open = without(&torn_ring(), DVec3::new(-1.0, 0.0, 0.3), 0.12);
+    let mut open = without(&torn_ring(), DVec3::new(-1.0, 0.0, 0.3), 0.12);
+    let mut between = cuboid(DVec3::new(1.3, -0.04, -0.04), DVec3::new(1.4, 0.04, 0.04));
+    between.triangles.retain(|t| !t.iter().all(|&v| between.positions[v as usize].x == 1.4));
+    open.append(&between);
     let outcome = repaired(&open, &options(Style::Auto));
-    let voxels = HoleClosing::Voxels(NotLidded::NoHole);
-    assert_eq!(closings(&outcome), [voxels, voxels, HoleClosing::Lid(LidShape::Smooth)]);
+    let voxels = HoleClosing::Voxels(NotLidded::Meets);
+    let lids = [LidShape::Smooth, LidShape::Flat].map(HoleClosing::Lid);
+    assert_eq!(closings(&outcome), [voxels, voxels, lids[0], lids[1]]);
     let of_lid = outcome.sources.iter().filter(|source| matches!(source, TriangleSource::Lid { hole: 3, .. })).count();
     assert_eq!(of_lid, outcome.report.holes[2].triangles);
     assert!(outcome.report.lattice);

@@ -48,7 +48,7 @@ fn check(corners: [Place; 3], others: &[Place], wanted: &[[usize; 2]], axis: usi
     };
     let points = Points::new(places.iter().map(in_space).collect());
     let numbers: Vec<u32> = (0..places.len() as u32).collect();
-    let flat = FlatPoints::new(&points, &numbers, axis, false);
+    let flat = FlatPoints::new(&points, &numbers, axis);
     let mut planar = Planar::new(&flat, [0, 1, 2]);
     numbers[3..].iter().for_each(|&p| planar.insert(p));
     let mut segments: Vec<[usize; 2]> = Vec::new();

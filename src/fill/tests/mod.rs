@@ -1,5 +1,6 @@
 //! What is asked of lids, on shapes whose truth is known.
 
+mod bands;
 mod loops;
 mod truth;
 

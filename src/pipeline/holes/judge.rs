@@ -3,15 +3,22 @@
 use glam::DVec3;
 
 use super::patches::{Patches, place};
-use crate::fill::{FillOptions, Rim, Style, Surroundings, lid};
+use crate::fill::{FillOptions, Lid, Rim, Style, Surroundings, is_gap_in_plane, lid};
 use crate::orient::OrientMode;
 use crate::progress::{Progress, Stopped};
 use crate::survey::Soup;
 use crate::vote::WindingTree;
 
-/// How far before and behind a lid winding numbers are looked at, as parts of the width of its largest triangle: near it other holes matter little, and
-/// farther away it matters little how the lid runs. One look that says that there is a hole suffices; between rims that face each other none does.
-const LOOKS: [f64; 3] = [0.125, 0.25, 0.5];
+/// How far before and behind the triangles of a lid winding numbers are looked at, as parts of the rim's diameter, or of the gap that a band closes: near it other holes matter little, and
+/// farther away it matters little how the lid runs. One look at a triangle that says that there is a hole suffices; between rims that face each other none does.
+const LOOKS: [f64; 3] = [0.1, 0.2, 0.4];
+
+/// Over so much of a lid's area there has to be a hole: where a rim is bent, the flat lid over it runs through the body in part, or in front of it.
+pub(super) const ENOUGH: f64 = 0.2;
+
+/// Over less of it the lid is in doubt, and gives way to a band between two rims that face each other; a band has to part inside and outside over more: between rims that do not belong
+/// together it runs through the inside or the outside for the most part. The flat lids at a ring torn by a quarter of its tube's width part them over a fifth of their area, by a half over four fifths.
+pub(super) const MOST: f64 = 0.5;
 
 /// From this winding number of all other patches on a place lies inside of these: what is open there is open inside of another body. Between two halves of a torn body it is about a half.
 const WITHIN: f64 = 0.75;
@@ -60,30 +67,51 @@ impl<'a> Judge<'a> {
         self.sign * self.own[self.patches.beside(rim)].as_ref().unwrap_or(&self.all).winding(at)
     }
 
-    /// Whether there is a hole where a rim is: inside is behind the flat lid over it, and outside in front of it, or the inside of another body on both sides. Of two rims
-    /// that face each other, as where a ring is missing, the space between them is inside as well.
-    pub(super) fn is_hole(&self, rim: &Rim, progress: &Progress) -> Result<bool, Stopped> {
-        progress.check()?;
-        let mesh = self.around.mesh();
+    /// Over which part of the flat lid over a rim inside is behind it and outside in front of it, or the inside of another body on both sides; see [`ENOUGH`]. Of two rims that face each
+    /// other, as where a ring is missing, the space between them is inside as well. Where a piece of a flat side is missing that is known without: 1.
+    pub(super) fn hole(&self, rim: &Rim, progress: &Progress) -> Result<f64, Stopped> {
+        if is_gap_in_plane(self.around, rim) {
+            return Ok(1.0);
+        }
         let flat = FillOptions { style: Style::Flat, ..FillOptions::default() };
-        let Ok(lid) = lid(self.around, rim, &flat) else { return Ok(false) };
-        let at = |v: u32| place(mesh, &lid, v);
-        let across = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(at);
-            (b - a).cross(c - a)
-        };
-        let largest = lid.triangles.iter().max_by(|a, b| across(a).length().total_cmp(&across(b).length()));
-        let Some(triangle) = largest else { return Ok(false) };
-        let normal = across(triangle) * self.sign;
-        let middle = triangle.map(at).iter().sum::<DVec3>() / 3.0;
-        let unit = normal.normalize_or_zero() * (normal.length() / 2.0).sqrt();
-        Ok(LOOKS.iter().any(|&share| self.parts(rim, middle - unit * share, middle + unit * share)))
+        let Ok(lid) = lid(self.around, rim, &flat) else { return Ok(0.0) };
+        self.parting(&[&lid], rim.diameter, &|at| self.own(rim, at), progress)
+    }
+
+    /// Over which part of its area a band between two rims parts inside and outside. `gap`: how far the rims are from each other, model units.
+    pub(super) fn band(&self, rims: [&Rim; 2], lids: &[Lid; 2], gap: f64, progress: &Progress) -> Result<f64, Stopped> {
+        let several = self.patches.beside(rims[0]) != self.patches.beside(rims[1]);
+        let own = |at| self.own(rims[0], at) + if several { self.own(rims[1], at) } else { 0.0 };
+        self.parting(&[&lids[0], &lids[1]], gap, &own, progress)
+    }
+
+    /// Over which part of their area lids part inside and outside. `width`: how far apart is what they close, model units; `own`: the winding number of what they are of.
+    fn parting(
+        &self,
+        lids: &[&Lid],
+        width: f64,
+        own: &dyn Fn(DVec3) -> f64,
+        progress: &Progress,
+    ) -> Result<f64, Stopped> {
+        let mesh = self.around.mesh();
+        let (mut all, mut parting) = (0.0, 0.0);
+        for (lid, corners) in lids.iter().flat_map(|lid| lid.triangles.iter().map(move |corners| (lid, corners))) {
+            progress.check()?;
+            let [a, b, c] = corners.map(|v| place(mesh, lid, v));
+            let across = (b - a).cross(c - a);
+            let (middle, unit) = ((a + b + c) / 3.0, across.normalize_or_zero() * (self.sign * width));
+            all += across.length();
+            if LOOKS.iter().any(|&share| self.parts(own, middle - unit * share, middle + unit * share)) {
+                parting += across.length();
+            }
+        }
+        Ok(if all > 0.0 { parting / all } else { 0.0 })
     }
 
     /// Whether the solid is behind a rim, and not in front of it but for another body.
-    fn parts(&self, rim: &Rim, behind: DVec3, front: DVec3) -> bool {
+    fn parts(&self, own: &dyn Fn(DVec3) -> f64, behind: DVec3, front: DVec3) -> bool {
         let all = [behind, front].map(|at| self.sign * self.all.winding(at));
-        let own = [behind, front].map(|at| self.own(rim, at));
+        let own = [behind, front].map(own);
         let parted = own[0] > 0.5 && own[1] < 0.5;
         let within = all[0] - own[0] > WITHIN && all[1] - own[1] > WITHIN;
         parted && all[0] > 0.5 && (all[1] < 0.5 || within)

@@ -1,5 +1,6 @@
 //! What becomes of the holes of one operand: a lid over each rim, made from the rim alone and judged by winding numbers, or voxels.
 
+mod bands;
 mod judge;
 mod maker;
 mod open;
@@ -9,11 +10,13 @@ mod refuse;
 use std::borrow::Cow;
 
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 pub(super) use self::maker::WIDE;
 pub use self::open::{NotOpened, Opened};
 
-use self::judge::Judge;
+use self::bands::{Band, bands};
+use self::judge::{ENOUGH, Judge};
 use self::maker::{Made, Maker, WAYS};
 use self::patches::Patches;
 use super::{BooleanError, HoleReport, NotLidded, Options};
@@ -31,6 +34,10 @@ const MOST_RIMS: usize = 5000;
 pub(super) struct Plan {
     rims: Vec<Rim>,
     lids: Vec<Result<Made, NotLidded>>,
+    /// Over which part of its area the lid over each rim parts inside and outside, as far as that was asked; 1 for bands.
+    parting: Vec<f64>,
+    /// Pairs of rims that are joined by bands.
+    joined: Vec<[usize; 2]>,
 }
 
 /// The holes of a mesh, the longest rim first, and what [`repair`](super::repair) would do over each if the mesh is to be made whole.
@@ -43,44 +50,72 @@ pub fn holes(mesh: &TriMesh, options: &Options, progress: &Progress) -> Result<V
     Ok(planned(&soup, options, progress)?.reports())
 }
 
-/// Finds the rims of a soup, and a lid for each that has one: which meets nothing, and over which winding numbers see a hole.
+/// Finds the rims of a soup, and a lid for each that has one: which meets nothing, and over which winding numbers see a hole. Rims that have none and face each other
+/// are joined by bands; then the others are judged anew.
 pub(super) fn planned(soup: &Soup, options: &Options, progress: &Progress) -> Result<Plan, Stopped> {
     let rims = rims(&soup.mesh);
-    let none = |why: NotLidded, rims: Vec<Rim>| Ok(Plan { lids: rims.iter().map(|_| Err(why)).collect(), rims });
     if options.vote != VoteRule::Winding {
-        return none(NotLidded::Rays, rims);
+        return Ok(Plan::none(rims, NotLidded::Rays));
     }
     if rims.is_empty() || rims.len() > MOST_RIMS {
-        return none(NotLidded::TooMany, rims);
+        return Ok(Plan::none(rims, NotLidded::TooMany));
     }
     let around = Surroundings::new(&soup.mesh);
     let patches = Patches::of(soup);
     let judge = Judge::new(&around, soup, (&patches, &rims), options.orient, progress)?;
     let maker = Maker { around: &around, patches: &patches, judge: &judge, style: options.fill };
-    let first = rims.par_iter().map(|rim| maker.lid(rim, 0, progress));
-    let mut plan = Plan { lids: first.collect::<Result<_, _>>()?, rims };
-    let each: Vec<_> = plan.rims.iter().zip(&plan.lids).collect();
-    let refused = refuse::refused(&patches, &soup.mesh, &each, judge.sign);
-    for (rim, lid) in plan.rims.iter().zip(&mut plan.lids) {
-        if let Some(why) = refused[patches.beside(rim)] {
-            *lid = Err(why);
-        }
+    let plan = Plan::lidded(rims, Vec::new(), &maker, progress)?;
+    let bands = bands(&plan, &maker, progress)?;
+    if bands.is_empty() {
+        return Ok(plan);
     }
-    let judged = plan.rims.par_iter().zip(&plan.lids).map(|(rim, lid)| match lid {
-        Ok(_) => judge.is_hole(rim, progress),
-        Err(_) => Ok(true),
-    });
-    let judged: Vec<bool> = judged.collect::<Result<_, _>>()?;
-    for (lid, is_hole) in plan.lids.iter_mut().zip(judged) {
-        if !is_hole {
-            *lid = Err(NotLidded::NoHole);
-        }
-    }
-    plan.without_meetings(&soup.mesh, &maker, progress)?;
-    Ok(plan)
+    let Plan { rims, .. } = plan;
+    let patches = patches.clone().joined(bands.iter().map(|band| band.rims.map(|n| &rims[n])));
+    let judge = Judge::new(&around, soup, (&patches, &rims), options.orient, progress)?;
+    let maker = Maker { patches: &patches, judge: &judge, ..maker };
+    Plan::lidded(rims, bands, &maker, progress)
 }
 
 impl Plan {
+    /// No rim has a lid, all for one reason.
+    fn none(rims: Vec<Rim>, why: NotLidded) -> Self {
+        Self { lids: rims.iter().map(|_| Err(why)).collect(), rims, ..Self::default() }
+    }
+
+    /// Bands between rims, and lids over the others.
+    fn lidded(rims: Vec<Rim>, bands: Vec<Band>, maker: &Maker<'_>, progress: &Progress) -> Result<Self, Stopped> {
+        let (judge, patches, mesh) = (maker.judge, maker.patches, maker.around.mesh());
+        let joined: Vec<[usize; 2]> = bands.iter().map(|band| band.rims).collect();
+        let mut made: FxHashMap<usize, Made> = bands.into_iter().flat_map(Band::made).collect();
+        let has_band = |n: usize| joined.iter().flatten().any(|&m| m == n);
+        let first = rims.par_iter().enumerate().map(|(n, rim)| match has_band(n) {
+            // Its part of the band comes after.
+            true => Ok(Err(NotLidded::NoHole)),
+            false => maker.lid(rim, 0, progress),
+        });
+        let mut lids: Vec<Result<Made, NotLidded>> = first.collect::<Result<_, _>>()?;
+        made.drain().for_each(|(n, made)| lids[n] = Ok(made));
+        let each: Vec<_> = rims.iter().zip(&lids).collect();
+        let refused = refuse::refused(patches, mesh, &each, judge.sign);
+        for (n, rim) in rims.iter().enumerate() {
+            if let Some(why) = refused[patches.beside(rim)] {
+                lids[n] = Err(why);
+            }
+        }
+        let judged = rims.par_iter().zip(&lids).enumerate().map(|(n, (rim, lid))| match lid.is_err() || has_band(n) {
+            true => Ok(1.0),
+            false => judge.hole(rim, progress),
+        });
+        let parting: Vec<f64> = judged.collect::<Result<_, Stopped>>()?;
+        for (lid, _) in lids.iter_mut().zip(&parting).filter(|(_, parting)| **parting <= ENOUGH) {
+            *lid = Err(NotLidded::NoHole);
+        }
+        let mut plan = Self { rims, lids, parting, joined };
+        plan.without_meetings(mesh, maker, progress)?;
+        plan.joined.retain(|pair| pair.iter().all(|&n| plan.lids[n].is_ok()));
+        Ok(plan)
+    }
+
     /// Whether all rims have lids.
     pub fn is_whole(&self) -> bool {
         self.lids.iter().all(Result::is_ok)
@@ -98,7 +133,11 @@ impl Plan {
             let lid = lid.as_ref().map(|made| (&made.lid, made.shape)).map_err(|why| *why);
             HoleReport::of(number, rim, lid)
         };
-        list.map(report).collect()
+        let mut reports: Vec<HoleReport> = list.map(report).collect();
+        for &[n, m] in &self.joined {
+            (reports[n].joined_with, reports[m].joined_with) = (Some(m + 1), Some(n + 1));
+        }
+        reports
     }
 
     /// The soup with the lids, whose triangles come after those of the operand.
@@ -131,6 +170,9 @@ impl Plan {
             if meeting.is_empty() {
                 return Ok(());
             }
+            let (joined, meeting): (Vec<usize>, Vec<usize>) =
+                meeting.into_iter().partition(|n| self.partner(*n).is_some());
+            joined.iter().for_each(|&n| self.refuse(n, NotLidded::Meets));
             let other = |&n: &usize| Ok((n, maker.lid(&self.rims[n], way, progress)?));
             let others: Vec<(usize, Result<Made, NotLidded>)> =
                 meeting.par_iter().map(other).collect::<Result<_, Stopped>>()?;
@@ -138,9 +180,21 @@ impl Plan {
         }
         // Of two lids that meet each other neither is the better one; without both there may be others that met them only.
         for n in self.meeting(mesh, progress)? {
-            self.lids[n] = Err(NotLidded::Meets);
+            self.refuse(n, NotLidded::Meets);
         }
         Ok(())
+    }
+
+    /// The rim that a band joins with another one.
+    fn partner(&self, rim: usize) -> Option<usize> {
+        self.joined.iter().find_map(|&[n, m]| (n == rim).then_some(m).or((m == rim).then_some(n)))
+    }
+
+    /// Takes away what closes a rim, and with a band what closes its partner.
+    fn refuse(&mut self, rim: usize, why: NotLidded) {
+        for n in [Some(rim), self.partner(rim)].into_iter().flatten() {
+            self.lids[n] = Err(why);
+        }
     }
 
     /// The rims whose lids meet each other, themselves, or the mesh.

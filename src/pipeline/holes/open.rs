@@ -49,7 +49,8 @@ fn listed(numbers: &[usize]) -> String {
 }
 
 impl Outcome {
-    /// What is left of the solid of one operand without what closes some of its holes, and notes in the report that these are open. `leave`: their numbers, see [`HoleReport::number`](super::HoleReport::number).
+    /// What is left of the solid of one operand without what closes some of its holes, and notes in the report that these are open. `leave`: their numbers, see
+    /// [`HoleReport::number`](super::HoleReport::number). Of two that are joined both are left open.
     ///
     /// # Errors
     /// [`NotOpened`] where a number is that of no hole, or where some of the holes that voxels close would stay closed.
@@ -58,6 +59,8 @@ impl Outcome {
         if let Some(&number) = leave.iter().find(|&&number| !holes.iter().any(|hole| hole.number == number)) {
             return Err(NotOpened::NoHole { number, count: holes.len() });
         }
+        let joined = holes.iter().filter(|hole| leave.contains(&hole.number)).filter_map(|hole| hole.joined_with);
+        let leave: Vec<usize> = leave.iter().copied().chain(joined).collect();
         let of_voxels = holes.iter().filter(|hole| matches!(hole.closed_by, HoleClosing::Voxels(_)));
         let (left, stay): (Vec<usize>, Vec<usize>) = of_voxels.map(|hole| hole.number).partition(|n| leave.contains(n));
         if let (false, Some(&stays)) = (left.is_empty(), stay.first()) {

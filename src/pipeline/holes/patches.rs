@@ -7,6 +7,7 @@ use crate::mesh::{Bounds, TriMesh};
 use crate::survey::Soup;
 
 /// The patches of a soup.
+#[derive(Clone)]
 pub(super) struct Patches {
     /// For each vertex a patch that has it.
     at: Vec<usize>,
@@ -14,8 +15,8 @@ pub(super) struct Patches {
     pub area: Vec<f64>,
     /// For each patch six times the volume between its triangles and the origin, cubic model units.
     pub volume: Vec<f64>,
-    /// For each patch the diagonal of its bounding box, model units.
-    size: Vec<f64>,
+    /// For each patch its bounding box, where it has any triangles.
+    bounds: Vec<Option<Bounds>>,
     /// For each patch its triangles.
     pub triangles: Vec<Vec<u32>>,
 }
@@ -28,24 +29,35 @@ impl Patches {
             at: vec![0; mesh.positions.len()],
             area: vec![0.0; count],
             volume: vec![0.0; count],
-            size: Vec::new(),
+            bounds: vec![None; count],
             triangles: vec![Vec::new(); count],
         };
-        let mut bounds: Vec<Option<Bounds>> = vec![None; count];
         for (t, patch) in soup.patch_of.iter().map(|patch| patch.index()).enumerate() {
             let [a, b, c] = mesh.corners(t);
             patches.triangles[patch].push(t as u32);
             patches.area[patch] += (b - a).cross(c - a).length() / 2.0;
             patches.volume[patch] += a.dot(b.cross(c));
             mesh.triangles[t].iter().for_each(|&v| patches.at[v as usize] = patch);
-            let own = Bounds::of([a, b, c]);
-            bounds[patch] = match (bounds[patch].take(), own) {
-                (Some(all), Some(own)) => Some(all.union(&own)),
-                (all, own) => all.or(own),
-            };
+            patches.bounds[patch] = both(patches.bounds[patch].take(), Bounds::of([a, b, c]));
         }
-        patches.size = bounds.iter().map(|bounds| bounds.as_ref().map_or(0.0, Bounds::diagonal)).collect();
         patches
+    }
+
+    /// The same patches, of which those that bands join are one. `pairs`: rims that are joined.
+    pub(super) fn joined<'r>(mut self, pairs: impl Iterator<Item = [&'r Rim; 2]>) -> Self {
+        for rims in pairs {
+            let [one, other] = rims.map(|rim| self.beside(rim));
+            if one == other {
+                continue;
+            }
+            self.at.iter_mut().filter(|patch| **patch == other).for_each(|patch| *patch = one);
+            self.area[one] += std::mem::take(&mut self.area[other]);
+            self.volume[one] += std::mem::take(&mut self.volume[other]);
+            let (bounds, triangles) = (self.bounds[other].take(), std::mem::take(&mut self.triangles[other]));
+            self.bounds[one] = both(self.bounds[one].take(), bounds);
+            self.triangles[one].extend(triangles);
+        }
+        self
     }
 
     /// The patch that a rim is of.
@@ -55,7 +67,7 @@ impl Patches {
 
     /// The diagonal of the bounding box of the patch that a rim is of.
     pub(super) fn size_beside(&self, rim: &Rim) -> f64 {
-        self.size[self.beside(rim)]
+        self.bounds[self.beside(rim)].as_ref().map_or(0.0, Bounds::diagonal)
     }
 
     /// Six times the volume between a patch and the cone from the middles of its rims over them: that of the patch closed by simple lids.
@@ -67,6 +79,13 @@ impl Patches {
             volume += ends.map(|(a, b)| rim.centre.dot(at(a).cross(at(b)))).sum::<f64>();
         }
         volume
+    }
+}
+
+fn both(one: Option<Bounds>, other: Option<Bounds>) -> Option<Bounds> {
+    match (one, other) {
+        (Some(one), Some(other)) => Some(one.union(&other)),
+        (one, other) => one.or(other),
     }
 }
 

@@ -24,6 +24,8 @@ pub struct HoleReport {
     pub flatness: f64,
     /// What closes it.
     pub closed_by: HoleClosing,
+    /// The number of the hole that it is joined with, where a band closes both.
+    pub joined_with: Option<usize>,
     /// Triangles of the lid; 0 where there is none.
     pub triangles: usize,
     /// Area of the lid, square model units; 0 where there is none.
@@ -54,6 +56,8 @@ pub enum LidShape {
     Smooth,
     /// Along the level ½ of the winding number.
     Level,
+    /// Its part of a band that joins the rim with another one, which faces it. The triangles over the edges of this rim are counted here.
+    Band,
 }
 
 impl LidShape {
@@ -119,6 +123,7 @@ impl HoleReport {
                 Ok((_, shape)) => HoleClosing::Lid(shape),
                 Err(why) => HoleClosing::Voxels(why),
             },
+            joined_with: None,
             triangles: lid.map_or(0, |(lid, _)| lid.triangles.len()),
             area: lid.map_or(0.0, |(lid, _)| lid.area),
         }

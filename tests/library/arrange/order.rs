@@ -99,6 +99,37 @@ fn unordered(shells: &[Shell], seed: u64) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// Facets of one plane that face each other: which of them comes first must not matter, neither for the points that are left out nor for the way a
+/// flat region is triangulated.
+#[test]
+fn which_of_two_facets_that_face_each_other_comes_first_does_not_matter() {
+    let whole = |low, size| Shell::Whole { low, size };
+    let scenes = [
+        [
+            Shell::Tetrahedron([[4, 3, 4], [0, 3, 3], [3, 3, 1], [4, 4, 1]]),
+            whole([0, 0, 1], [2, 3, 1]),
+            whole([1, 2, 1], [2, 3, 1]),
+        ],
+        [
+            Shell::Tetrahedron([[4, 0, 1], [4, 3, 3], [3, 4, 3], [4, 3, 0]]),
+            whole([4, 2, 3], [3, 3, 2]),
+            whole([2, 2, 2], [3, 3, 2]),
+        ],
+        [
+            Shell::Tetrahedron([[2, 3, 3], [0, 0, 0], [3, 0, 0], [0, 1, 0]]),
+            whole([0, 3, 0], [2, 1, 3]),
+            whole([2, 2, 2], [1, 2, 3]),
+        ],
+        [whole([3, 3, 1], [2, 2, 2]), whole([2, 4, 1], [2, 3, 2]), whole([4, 2, 2], [1, 2, 3])],
+    ];
+    for shells in &scenes {
+        for seed in 0..48u64 {
+            let seed = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            unordered(shells, seed).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        }
+    }
+}
+
 /// The same result beside: `by` is many steps of the lattice, which stays the same one for a corner far out.
 fn shifted(shells: &[Shell], by: [i32; 3]) -> Result<(), TestCaseError> {
     // Coordinates lie between -16 and 16, moved ones too, and one operand reaches 24: the lattice's step is 2⁻²⁵ for both.
