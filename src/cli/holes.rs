@@ -62,8 +62,9 @@ pub fn opened(
     }
     let widest = leave.max_hole.map(|length| length.resolve(scale)).transpose()?;
     let stays_open = |hole: &&HoleReport| {
-        widest.is_some_and(|widest| hole.diameter > widest)
-            || !leave.holes.is_empty() && !leave.holes.contains(&hole.number)
+        hole.closed_by != HoleClosing::LeftOut
+            && (widest.is_some_and(|widest| hole.diameter > widest)
+                || !leave.holes.is_empty() && !leave.holes.contains(&hole.number))
     };
     let left: Vec<usize> = holes.iter().filter(stays_open).map(|hole| hole.number).collect();
     if left.is_empty() {
@@ -122,5 +123,6 @@ fn closing(hole: &HoleReport) -> String {
         },
         HoleClosing::Voxels(why) => format!("from voxels, since {why}"),
         HoleClosing::LeftOpen => "left open".into(),
+        HoleClosing::LeftOut => "left out with its sheet, which encloses nothing".into(),
     }
 }

@@ -188,6 +188,13 @@ pub fn lid(around: &Surroundings<'_>, rim: &Rim, options: &FillOptions) -> Resul
     smooth(&boundary, rim, around, options.most_vertices)
 }
 
+/// The lid that [`Style::Auto`] makes where that is flat; `None` where it would be smooth, or where there is none.
+pub(crate) fn flat_lid(around: &Surroundings<'_>, rim: &Rim) -> Option<Lid> {
+    let boundary = Boundary::new(around, rim).ok().filter(|boundary| boundary.len() > 3)?;
+    let cover = flat_cover(&boundary, rim, rim.diameter * boundary.scale, Style::Auto)?;
+    finished(&boundary, rim, around, cover, Style::Flat).ok().map(|(lid, _)| lid)
+}
+
 /// The smooth lid. It is divided along sharp edges that run through the hole. What crosses itself is shaped less, or not at all.
 fn smooth(boundary: &Boundary, rim: &Rim, around: &Surroundings<'_>, most: usize) -> Result<Lid, NoLid> {
     let style = Style::Smooth;

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 
 use super::{Options, Precision, StandingReport, TriangleSource};
 use crate::fit::{FitOptions, SimpleSource, rounded, simplified_source};
-use crate::ldi::{Expression, Operands};
+use crate::ldi::Expression;
 use crate::mesh::TriMesh;
 use crate::mesh::edges::Union;
 use crate::progress::{Progress, Stopped};
@@ -184,27 +184,14 @@ impl Apart {
 
     /// The soup without what stands or is left out.
     pub(super) fn rest(&self, soup: &Soup) -> Soup {
-        let is_open = |t: usize| self.fate(self.shells.of[t] as usize).is_open();
-        let left: Vec<usize> = (0..soup.mesh.triangles.len()).filter(|&t| is_open(t)).collect();
-        let mut reports = soup.reports.clone();
+        let mut rest = soup.only(|t| self.fate(self.shells.of[t] as usize).is_open());
         for (fate, shell) in self.fates() {
             if matches!(fate, Fate::Bounds { turned: true, .. } | Fate::Inside { turned: true }) {
-                reports[shell.operand].flipped_patches += 1;
-                reports[shell.operand].flipped_by_rays += shell.triangles.len();
+                rest.reports[shell.operand].flipped_patches += 1;
+                rest.reports[shell.operand].flipped_by_rays += shell.triangles.len();
             }
         }
-        let mut counts = vec![0; soup.operands.count()];
-        left.iter().for_each(|&t| counts[soup.operands.of(t as u32)] += 1);
-        let triangles = left.iter().map(|&t| soup.mesh.triangles[t]).collect();
-        Soup {
-            mesh: TriMesh { positions: soup.mesh.positions.clone(), triangles },
-            operands: Operands::new(counts).with_inside(soup.operands.inside),
-            patch_of: left.iter().map(|&t| soup.patch_of[t]).collect(),
-            patch_count: soup.patch_count,
-            reports,
-            source: left.iter().map(|&t| soup.source[t]).collect(),
-            lids: Vec::new(),
-        }
+        rest
     }
 
     /// The surface that stands, with where its triangles come from: vertices and triangles as the operands have them, in their order.

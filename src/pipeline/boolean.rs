@@ -149,6 +149,7 @@ impl Task<'_> {
             }
         };
         draft.report.holes = holes.reports();
+        draft.report.warnings.extend(holes.warning());
         Ok(account::finished(draft, &apart, stages))
     }
 }

@@ -41,6 +41,7 @@ impl Job<'_> {
         };
         draft.report.closed_triangles = draft.sources.iter().filter(|source| source.is_made_up()).count();
         draft.report.holes = plan.reports();
+        draft.report.warnings.extend(plan.warning());
         self.beside_standing(draft, standing)
     }
 

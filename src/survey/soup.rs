@@ -123,6 +123,23 @@ impl Soup {
         closed
     }
 
+    /// The same with some of the triangles of the operands alone; vertices and patches keep their numbers.
+    pub fn only(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let left: Vec<usize> = (0..self.source.len()).filter(|&t| keep(t)).collect();
+        let mut counts = vec![0; self.operands.count()];
+        left.iter().for_each(|&t| counts[self.operands.of(t as u32)] += 1);
+        let triangles = left.iter().map(|&t| self.mesh.triangles[t]).collect();
+        Self {
+            mesh: TriMesh { positions: self.mesh.positions.clone(), triangles },
+            operands: Operands::new(counts).with_inside(self.operands.inside),
+            patch_of: left.iter().map(|&t| self.patch_of[t]).collect(),
+            patch_count: self.patch_count,
+            reports: self.reports.clone(),
+            source: left.iter().map(|&t| self.source[t]).collect(),
+            lids: Vec::new(),
+        }
+    }
+
     /// Where a triangle comes from: its operand and its number there. `None` for that of a lid.
     pub fn given(&self, triangle: u32) -> Option<(usize, u32)> {
         let source = self.source.get(triangle as usize)?;

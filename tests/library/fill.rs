@@ -7,7 +7,7 @@ use meshwright::fill::Style;
 use meshwright::mesh::TriMesh;
 use meshwright::pipeline::{
     BooleanError, HoleClosing, LidShape, Method, NotLidded, NotOpened, Options, Outcome, TriangleSource, VoxelSize,
-    holes, repair,
+    Warning, holes, repair,
 };
 use meshwright::progress::Progress;
 
@@ -188,6 +188,63 @@ fn sheets_are_not_closed_and_voxels_can_be_asked_for() {
     let open = without(&whole, DVec3::X, 0.3);
     let outcome = repaired(&open, &Options { method: Method::Voxel, ..options(Style::Auto) });
     assert!(outcome.report.holes.is_empty() && outcome.report.lattice);
+}
+
+/// A piece of a wavy sheet, from `at` on, of this width.
+fn wavy(at: DVec3, width: f64) -> TriMesh {
+    let place = |n: u32, m: u32| {
+        let (x, y) = (f64::from(n) / 12.0, f64::from(m) / 12.0);
+        at + width * DVec3::new(x, y, 0.1 * (6.0 * x).sin())
+    };
+    let positions = (0..=12).flat_map(|n| (0..=12).map(move |m| place(n, m))).collect();
+    let quad = |n: u32, m: u32| {
+        let a = 13 * n + m;
+        [[a, a + 13, a + 14], [a, a + 14, a + 1]]
+    };
+    TriMesh { positions, triangles: (0..12).flat_map(|n| (0..12).flat_map(move |m| quad(n, m))).collect() }
+}
+
+/// Pieces that float around a scan: they are left out with a note, and the holes of the body have lids. What is large, or encloses something with others, is not.
+#[test]
+fn small_sheets_beside_a_body_are_left_out() {
+    let body = without(&torus(96, 48), DVec3::new(-1.0, 0.0, 0.3), 0.12);
+    let with = |sheets: &[TriMesh]| {
+        let mut all = body.clone();
+        sheets.iter().for_each(|sheet| all.append(sheet));
+        repaired(&all, &options(Style::Auto))
+    };
+    let alone = with(&[]);
+    let (floating, inside) = (wavy(DVec3::new(1.6, 0.0, 0.0), 0.4), wavy(DVec3::new(0.9, -0.1, 0.0), 0.2));
+    for sheets in [&[floating.clone()][..], &[inside.clone()], &[floating, inside]] {
+        let outcome = with(sheets);
+        assert_eq!(outcome.solid.triangles.len(), alone.solid.triangles.len());
+        assert!(!outcome.report.lattice && (volume(&outcome.solid) - volume(&alone.solid)).abs() < 1e-12);
+        let left = closings(&outcome).iter().filter(|how| **how == HoleClosing::LeftOut).count();
+        assert_eq!(left, sheets.len());
+        let triangles = 288 * sheets.len();
+        assert!(
+            outcome.report.warnings.contains(&Warning::SheetsLeftOut { triangles }),
+            "{:?}",
+            outcome.report.warnings
+        );
+    }
+    let large = with(&[wavy(DVec3::new(1.6, -0.7, 0.0), 1.4)]);
+    assert!(large.report.lattice && !closings(&large).contains(&HoleClosing::LeftOut));
+    // The sides of a box with gaps between them.
+    let whole = cuboid(DVec3::ZERO, DVec3::splat(0.3));
+    let sides = (0..6).map(|side| {
+        let (axis, high) = (side / 2, side % 2 == 1);
+        let on = |v: u32| whole.positions[v as usize][axis] == if high { 0.3 } else { 0.0 };
+        let of: Vec<_> = whole.triangles.iter().filter(|t| t.iter().all(|&v| on(v))).copied().collect();
+        let middle = DVec3::splat(0.15);
+        let aside = DVec3::AXES[axis] * if high { 0.01 } else { -0.01 };
+        let positions = whole.positions.iter().map(|&p| middle + (p - middle) + aside + DVec3::X * 1.7);
+        TriMesh { positions: positions.collect(), triangles: of }.welded()
+    });
+    let sides: Vec<TriMesh> = sides.collect();
+    let outcome = with(&sides);
+    assert!(!closings(&outcome).contains(&HoleClosing::LeftOut));
+    assert_eq!(state(&outcome.solid, true).bodies, 2);
 }
 
 fn closings(outcome: &Outcome) -> Vec<HoleClosing> {

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::patches::{Patches, place};
 use crate::fill::{FillOptions, Lid, Rim, Style, Surroundings, is_gap_in_plane, lid};
+use crate::mesh::TriMesh;
 use crate::orient::OrientMode;
 use crate::progress::{Progress, Stopped};
 use crate::survey::Soup;
@@ -22,6 +23,13 @@ pub(super) const MOST: f64 = 0.5;
 
 /// From this winding number of all other patches on a place lies inside of these: what is open there is open inside of another body. Between two halves of a torn body it is about a half.
 const WITHIN: f64 = 0.75;
+
+/// How far before and behind the triangles of a sheet winding numbers are looked at, as a part of its width, and at most how many of them.
+const ASIDE: f64 = 0.02;
+const SAMPLED: usize = 256;
+
+/// What parts inside and outside over more of its area is no sheet that may be left out.
+const FEW: f64 = 0.05;
 
 /// Winding numbers of all patches, and of each one that has a rim.
 pub(super) struct Judge<'a> {
@@ -83,6 +91,25 @@ impl<'a> Judge<'a> {
         let several = self.patches.beside(rims[0]) != self.patches.beside(rims[1]);
         let own = |at| self.own(rims[0], at) + if several { self.own(rims[1], at) } else { 0.0 };
         self.parting(&[&lids[0], &lids[1]], gap, &own, progress)
+    }
+
+    /// Whether an open patch has inside on one side and outside on the other, as all patches have it: a single sheet has neither, its winding numbers are about ½ on both sides.
+    pub(super) fn parts_space(&self, patch: usize, mesh: &TriMesh, progress: &Progress) -> Result<bool, Stopped> {
+        let triangles = &self.patches.triangles[patch];
+        let away = ASIDE * self.patches.size(patch);
+        let (mut all, mut parting) = (0.0, 0.0);
+        for &t in triangles.iter().step_by(triangles.len().div_ceil(SAMPLED)) {
+            progress.check()?;
+            let [a, b, c] = mesh.corners(t as usize);
+            let across = (b - a).cross(c - a);
+            let (middle, aside) = ((a + b + c) / 3.0, across.normalize_or_zero() * away);
+            let sides = [middle - aside, middle + aside].map(|at| self.all.winding(at).abs());
+            all += across.length();
+            if sides[0].max(sides[1]) > WITHIN && sides[0].min(sides[1]) < 1.0 - WITHIN {
+                parting += across.length();
+            }
+        }
+        Ok(parting > FEW * all)
     }
 
     /// Over which part of their area lids part inside and outside. `width`: how far apart is what they close, model units; `own`: the winding number of what they are of.

@@ -2,7 +2,7 @@
 
 use super::judge::Judge;
 use super::patches::Patches;
-use crate::fill::{FillOptions, Lid, NoLid, Rim, Style, Surroundings, level_lid, lid};
+use crate::fill::{FillOptions, Lid, NoLid, Rim, Style, Surroundings, flat_lid, level_lid, lid};
 use crate::pipeline::{LidShape, NotLidded};
 use crate::progress::{Progress, Stopped};
 
@@ -39,6 +39,8 @@ pub(super) struct Made {
 enum Way {
     /// That of a style.
     Of(Style),
+    /// In the planes of what is beside, where these close the rim, and else along the level ½ of the winding number.
+    Planes,
     /// Along the level ½ of the winding number.
     Level,
 }
@@ -48,12 +50,14 @@ impl Maker<'_> {
     pub(super) fn lid(&self, rim: &Rim, way: usize, progress: &Progress) -> Result<Result<Made, NotLidded>, Stopped> {
         progress.check()?;
         let Some(&way) = self.ways(rim).get(way) else { return Ok(Err(NotLidded::Meets)) };
+        let level = || {
+            let made = level_lid(self.around, rim, &|at| self.judge.own(rim, at), &FillOptions::default());
+            made.map(|lid| Made { lid, shape: LidShape::Level })
+        };
         let made = match way {
             Way::Of(style) => lid(self.around, rim, &FillOptions { style, ..FillOptions::default() }).map(Made::from),
-            Way::Level => {
-                let made = level_lid(self.around, rim, &|at| self.judge.own(rim, at), &FillOptions::default());
-                made.map(|lid| Made { lid, shape: LidShape::Level })
-            }
+            Way::Planes => flat_lid(self.around, rim).map_or_else(level, |lid| Ok(Made::from(lid))),
+            Way::Level => level(),
         };
         Ok(made.map_err(|why| match why {
             NoLid::NoArea => NotLidded::NoArea,
@@ -68,8 +72,8 @@ impl Maker<'_> {
         match self.style {
             Style::Smooth => &[Way::Of(Style::Smooth), Way::Level, Way::Of(Style::Flat)],
             Style::Auto if !is_wide => &[Way::Of(Style::Auto), Way::Level, Way::Of(Style::Flat)],
-            Style::Auto if !is_even => &[Way::Level],
-            Style::Flat if !is_even => &[Way::Level, Way::Of(Style::Flat)],
+            Style::Auto if !is_even => &[Way::Planes, Way::Level],
+            Style::Flat if !is_even => &[Way::Planes, Way::Level, Way::Of(Style::Flat)],
             Style::Auto | Style::Flat => &[Way::Of(Style::Flat), Way::Level],
         }
     }

@@ -6,6 +6,7 @@ mod maker;
 mod open;
 mod patches;
 mod refuse;
+mod sheets;
 
 use std::borrow::Cow;
 
@@ -19,7 +20,8 @@ use self::bands::{Band, bands};
 use self::judge::{ENOUGH, Judge};
 use self::maker::{Made, Maker, WAYS};
 use self::patches::Patches;
-use super::{BooleanError, HoleReport, NotLidded, Options};
+use self::sheets::left_out;
+use super::{BooleanError, HoleClosing, HoleReport, NotLidded, Options, Warning};
 use crate::fill::{Rim, Surroundings, rims};
 use crate::mesh::{TriMesh, intersections_with};
 use crate::progress::{Progress, Stopped};
@@ -38,6 +40,8 @@ pub(super) struct Plan {
     parting: Vec<f64>,
     /// Pairs of rims that are joined by bands.
     joined: Vec<[usize; 2]>,
+    /// For each triangle whether it is of a sheet that is left out; empty where none is.
+    left_out: Vec<bool>,
 }
 
 /// The holes of a mesh, the longest rim first, and what [`repair`](super::repair) would do over each if the mesh is to be made whole.
@@ -110,15 +114,32 @@ impl Plan {
         for (lid, _) in lids.iter_mut().zip(&parting).filter(|(_, parting)| **parting <= ENOUGH) {
             *lid = Err(NotLidded::NoHole);
         }
-        let mut plan = Self { rims, lids, parting, joined };
+        let mut plan = Self { rims, lids, parting, joined, left_out: Vec::new() };
         plan.without_meetings(mesh, maker, progress)?;
+        if plan.lids.iter().any(|lid| matches!(lid, Err(NotLidded::Sheet))) {
+            plan.left_out = left_out(&plan, (patches, judge), mesh, progress)?;
+            if plan.left_out.is_empty() {
+                refuse::beside(&mut plan.lids);
+            }
+        }
         plan.joined.retain(|pair| pair.iter().all(|&n| plan.lids[n].is_ok()));
         Ok(plan)
     }
 
-    /// Whether all rims have lids.
+    /// Whether all rims have lids, but for those of sheets that are left out.
     pub fn is_whole(&self) -> bool {
-        self.lids.iter().all(Result::is_ok)
+        self.lids.iter().all(|lid| lid.is_ok() || self.is_out(lid))
+    }
+
+    /// Whether a rim is that of a sheet that is left out.
+    fn is_out(&self, lid: &Result<Made, NotLidded>) -> bool {
+        !self.left_out.is_empty() && matches!(lid, Err(NotLidded::Sheet))
+    }
+
+    /// A note on the sheets that are left out.
+    pub fn warning(&self) -> Option<Warning> {
+        let triangles = self.left_out.iter().filter(|out| **out).count();
+        (triangles > 0).then_some(Warning::SheetsLeftOut { triangles })
     }
 
     /// Whether no rim has one.
@@ -134,20 +155,26 @@ impl Plan {
             HoleReport::of(number, rim, lid)
         };
         let mut reports: Vec<HoleReport> = list.map(report).collect();
+        for (report, _) in reports.iter_mut().zip(&self.lids).filter(|(_, lid)| self.is_out(lid)) {
+            report.closed_by = HoleClosing::LeftOut;
+        }
         for &[n, m] in &self.joined {
             (reports[n].joined_with, reports[m].joined_with) = (Some(m + 1), Some(n + 1));
         }
         reports
     }
 
-    /// The soup with the lids, whose triangles come after those of the operand.
+    /// The soup with the lids, whose triangles come after those of the operand, and without the sheets that are left out.
     pub fn over<'a>(&self, soup: &'a Soup) -> Cow<'a, Soup> {
         if self.is_empty() {
             return Cow::Borrowed(soup);
         }
         let (lids, of) = self.lids_of(&soup.mesh);
         let of: Vec<(u32, u32)> = of.iter().map(|&n| (n as u32 + 1, self.rims[n].vertices[0])).collect();
-        Cow::Owned(soup.with_lids(&lids, &of))
+        Cow::Owned(match self.left_out.is_empty() {
+            true => soup.with_lids(&lids, &of),
+            false => soup.only(|t| !self.left_out[t]).with_lids(&lids, &of),
+        })
     }
 
     /// All lids, in numbers that follow those of the mesh's vertices, and for each triangle its rim.
@@ -197,13 +224,20 @@ impl Plan {
         }
     }
 
-    /// The rims whose lids meet each other, themselves, or the mesh.
-    fn meeting(&self, mesh: &TriMesh, progress: &Progress) -> Result<Vec<usize>, Stopped> {
-        let (lids, of) = self.lids_of(mesh);
-        let own = mesh.triangles.len();
+    /// The mesh with the lids, whose triangles come last.
+    fn closed(&self, mesh: &TriMesh) -> TriMesh {
+        let (lids, _) = self.lids_of(mesh);
         let mut closed = mesh.clone();
         closed.positions.extend_from_slice(&lids.positions);
         closed.triangles.extend_from_slice(&lids.triangles);
+        closed
+    }
+
+    /// The rims whose lids meet each other, themselves, or the mesh.
+    fn meeting(&self, mesh: &TriMesh, progress: &Progress) -> Result<Vec<usize>, Stopped> {
+        let own = mesh.triangles.len();
+        let closed = self.closed(mesh);
+        let (_, of) = self.lids_of(mesh);
         let is_lid: Vec<bool> = (0..closed.triangles.len()).map(|t| t >= own).collect();
         let found = intersections_with(&closed, &is_lid, progress)?;
         let mut meeting: Vec<usize> =

@@ -82,7 +82,8 @@ impl Outcome {
     }
 
     fn without(&mut self, goes: impl Fn(&TriangleSource) -> bool, leave: impl Fn(&&mut HoleReport) -> bool) -> Opened {
-        for hole in self.report.holes.iter_mut().filter(leave) {
+        let is_there = |hole: &&mut HoleReport| hole.closed_by != HoleClosing::LeftOut;
+        for hole in self.report.holes.iter_mut().filter(leave).filter(is_there) {
             (hole.closed_by, hole.triangles, hole.area) = (HoleClosing::LeftOpen, 0, 0.0);
         }
         // Whatever was left open before: of that the solid knows nothing.

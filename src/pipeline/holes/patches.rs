@@ -67,7 +67,12 @@ impl Patches {
 
     /// The diagonal of the bounding box of the patch that a rim is of.
     pub(super) fn size_beside(&self, rim: &Rim) -> f64 {
-        self.bounds[self.beside(rim)].as_ref().map_or(0.0, Bounds::diagonal)
+        self.size(self.beside(rim))
+    }
+
+    /// The diagonal of the bounding box of a patch, model units.
+    pub(super) fn size(&self, patch: usize) -> f64 {
+        self.bounds[patch].as_ref().map_or(0.0, Bounds::diagonal)
     }
 
     /// Six times the volume between a patch and the cone from the middles of its rims over them: that of the patch closed by simple lids.

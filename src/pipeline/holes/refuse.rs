@@ -9,8 +9,8 @@ use crate::pipeline::NotLidded;
 /// A patch whose lids have more than this part of its area is a sheet, of which lids would make something that it is not.
 const MOST_LIDS: f64 = 0.5;
 
-/// For each patch why its rims have no lids: it is not closed by them so that these are a small part of them and that they face outwards. Which way round other patches are is for the
-/// rays to find out: winding numbers of several that do not agree say nothing, so that then the others have no lids either.
+/// For each patch why its rims have no lids: it is not closed by them so that these are a small part of it and that it faces outwards. Where a patch faces inwards the others have no
+/// lids either, see [`beside`].
 pub(super) fn refused(
     patches: &Patches,
     mesh: &TriMesh,
@@ -38,8 +38,14 @@ pub(super) fn refused(
             refused[patch] = Some(NotLidded::FacesInwards);
         }
     }
-    if refused.iter().any(Option::is_some) {
+    if refused.contains(&Some(NotLidded::FacesInwards)) {
         refused.iter_mut().for_each(|why| *why = why.or(Some(NotLidded::Beside)));
     }
     refused
+}
+
+/// Takes the lids of other patches away, where some patch has none. Which way round that is, and what it is a piece of, is for the rays to find out: winding numbers of several that do not agree say
+/// nothing.
+pub(super) fn beside(lids: &mut [Result<Made, NotLidded>]) {
+    lids.iter_mut().filter(|lid| lid.is_ok()).for_each(|lid| *lid = Err(NotLidded::Beside));
 }

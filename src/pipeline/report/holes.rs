@@ -43,6 +43,8 @@ pub enum HoleClosing {
     Voxels(NotLidded),
     /// Nothing: it is left open, as is asked for.
     LeftOpen,
+    /// Nothing: it is the rim of a sheet beside a body, which encloses nothing and is left out.
+    LeftOut,
 }
 
 /// The shape of a lid.

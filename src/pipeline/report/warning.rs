@@ -35,6 +35,11 @@ pub enum Warning {
     },
     /// Beside the shells that stay as they are, the rest of the input encloses nothing.
     NothingMore(NothingEnclosed),
+    /// Sheets beside a body were left out: they enclose nothing and touch nothing.
+    SheetsLeftOut {
+        /// Their triangles.
+        triangles: usize,
+    },
 }
 
 impl fmt::Display for Warning {
@@ -59,6 +64,10 @@ impl fmt::Display for Warning {
                 f,
                 "the result is exact but for the numbers that files hold: rounding to them has changed the volume by {} %",
                 digits::number(100.0 * share)
+            ),
+            Self::SheetsLeftOut { triangles } => write!(
+                f,
+                "{triangles} triangles are left out: sheets beside the rest, which enclose nothing (`thicken` gives sheets a thickness)"
             ),
             Self::NothingMore(why) => write!(f, "beside what stays as it is, nothing more is enclosed: {why}"),
         }
