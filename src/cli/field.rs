@@ -53,7 +53,7 @@ pub fn run(args: &FieldArgs, session: &Session, report: &mut RunReport) -> Resul
         session.progress.stage(Stage::Examine)?;
         for (which, entry) in given.order.iter().zip(&mut report.inputs) {
             if let Which::Mesh(n) = *which {
-                entry.validity = Some(input::examine(&given.meshes[n].loaded, session)?);
+                entry.validity = Some(input::examine(&given.meshes[n].loaded, &session.progress)?);
             }
         }
         Ok::<(), Failure>(())

@@ -46,14 +46,14 @@ impl Given {
         session.progress.stage(Stage::Read)?;
         let mut inputs = Self { meshes: Vec::new(), grids: Vec::new(), order: Vec::new() };
         for path in paths {
-            let bytes = input::bytes_of(path, session)?;
+            let bytes = input::bytes_of(path, &session.progress)?;
             if is_grid(&bytes, path, args) {
                 inputs.order.push(Which::Grid(inputs.grids.len()));
                 let left = max_memory.map(|cap| cap.saturating_sub(inputs.held()));
                 inputs.grids.push(slice::grid_of(path, &bytes, left, notes)?);
             } else {
                 inputs.order.push(Which::Mesh(inputs.meshes.len()));
-                let mut mesh = input::mesh_of(path, &bytes, args, session, notes)?;
+                let mut mesh = input::mesh_of(path, &bytes, args, &session.progress, notes)?;
                 input::leave_out(&mut mesh, notes);
                 inputs.meshes.push(mesh);
             }

@@ -3,6 +3,8 @@
 use std::io::Read;
 use std::path::Path;
 
+use rayon::prelude::*;
+
 use super::entries::{InputEntry, PartEntry};
 use super::exit::{Exit, Failure};
 use super::session::Session;
@@ -14,7 +16,7 @@ use super::streams::sha256;
 use super::words;
 use crate::io::{self, Loaded, Part, TextureMap, Unit};
 use crate::mesh::{Validity, validate};
-use crate::progress::Stage;
+use crate::progress::{Progress, Stage};
 
 /// One mesh as read.
 pub struct Input {
@@ -53,8 +55,21 @@ pub fn read_operands(
 ) -> Result<Vec<Input>, Failure> {
     check_streams(paths)?;
     session.progress.stage(Stage::Read)?;
-    let mut read = |path: &&Path| mesh_of(path, &bytes_of(path, session)?, args, session, notes);
-    paths.iter().map(&mut read).collect()
+    let progress = &session.progress;
+    let read = |path: &&Path| {
+        let mut own = Vec::new();
+        let input = mesh_of(path, &bytes_of(path, progress)?, args, progress, &mut own)?;
+        Ok((input, own))
+    };
+    // Each by itself: of several that fail the first is told.
+    let read: Vec<Result<(Input, Vec<String>), Failure>> = paths.par_iter().map(read).collect();
+    read.into_iter()
+        .map(|input| {
+            let (input, own) = input?;
+            notes.extend(own);
+            Ok(input)
+        })
+        .collect()
 }
 
 /// Refuses to read standard input twice, and what cannot be read.
@@ -66,8 +81,8 @@ pub fn check_streams(paths: &[&Path]) -> Result<(), Failure> {
 }
 
 /// All bytes of a path.
-pub fn bytes_of(path: &Path, session: &Session) -> Result<Vec<u8>, Failure> {
-    session.progress.check()?;
+pub fn bytes_of(path: &Path, progress: &Progress) -> Result<Vec<u8>, Failure> {
+    progress.check()?;
     let bytes = if is_stream(path) { read_stream() } else { std::fs::read(path) };
     let bytes = bytes.map_err(|e| match e.kind() {
         std::io::ErrorKind::OutOfMemory => {
@@ -75,7 +90,7 @@ pub fn bytes_of(path: &Path, session: &Session) -> Result<Vec<u8>, Failure> {
         }
         _ => Failure::input(format!("cannot read {}: {}", label(path), plain_reason(&e))),
     })?;
-    session.progress.check()?;
+    progress.check()?;
     Ok(bytes)
 }
 
@@ -84,14 +99,14 @@ pub fn mesh_of(
     path: &Path,
     bytes: &[u8],
     args: &InputArgs,
-    session: &Session,
+    progress: &Progress,
     notes: &mut Vec<String>,
 ) -> Result<Input, Failure> {
     let label = label(path);
     let stream = is_stream(path);
     let name = (!stream).then_some(path);
     let loaded = io::read_bytes(bytes, args.in_format, name).map_err(|e| unreadable(&label, stream, args, &e))?;
-    session.progress.check()?;
+    progress.check()?;
     notes.extend(loaded.warnings.iter().map(|warning| format!("{label}: {warning}")));
     let entries = |parts: &[Part]| -> Vec<PartEntry> {
         parts.iter().map(|part| PartEntry { name: part.name.clone(), triangles: part.triangles.len() }).collect()
@@ -132,8 +147,8 @@ fn unreadable(label: &str, stream: bool, args: &InputArgs, error: &io::FileError
 }
 
 /// The state of a mesh as its file holds it.
-pub fn examine(loaded: &Loaded, session: &Session) -> Result<Validity, Failure> {
-    Ok(validate(&loaded.mesh, &loaded.validate_options(), &session.progress)?)
+pub fn examine(loaded: &Loaded, progress: &Progress) -> Result<Validity, Failure> {
+    Ok(validate(&loaded.mesh, &loaded.validate_options(), progress)?)
 }
 
 /// Brings all inputs to one unit and says which. Files that carry none are taken to be in

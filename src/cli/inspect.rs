@@ -28,7 +28,7 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
     }
     let Some(input) = given.meshes.first() else { return Err(Failure::internal("nothing was read")) };
     session.progress.stage(Stage::Examine)?;
-    let validity = report.timed(Stage::Examine, |_| input::examine(&input.loaded, session))?;
+    let validity = report.timed(Stage::Examine, |_| input::examine(&input.loaded, &session.progress))?;
     report.warnings.extend(closable(input, &validity, session)?);
     report.warnings.extend(summary::size_doubts(&input.loaded, unit));
     report.options = json!({ "unit": unit.map(|unit| unit.to_string()) });

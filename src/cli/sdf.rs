@@ -38,7 +38,7 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
     let Some(input) = inputs.first() else { return Err(Failure::internal("nothing was read")) };
     let validity = report.timed(Stage::Examine, |_| {
         session.progress.stage(Stage::Examine)?;
-        input::examine(&input.loaded, session)
+        input::examine(&input.loaded, &session.progress)
     })?;
     let options = options(args, input, unit, &validity)?;
     report.options = resolved(args, unit, format, &options);

@@ -184,7 +184,7 @@ impl<'a> Field<'a> {
     /// The exact signed distance of a mesh: by pseudonormals for a valid solid, else by the winding number.
     pub fn of_mesh(input: &'a Input, session: &Session) -> Result<Self, Failure> {
         let mesh = &input.loaded.mesh;
-        let valid = input::examine(&input.loaded, session)?.is_valid();
+        let valid = input::examine(&input.loaded, &session.progress)?.is_valid();
         let sign = match valid {
             true => PointSign::Pseudonormal,
             false => PointSign::Winding(WindingTree::new(mesh, 0..mesh.triangles.len(), &session.progress)?),

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
+use rayon::prelude::*;
 use serde_json::json;
 
 use super::change::{self, Change, Changed};
@@ -223,10 +224,11 @@ fn make(
     let unit = scale.unit;
     report.timed(Stage::Examine, |report| {
         session.progress.stage(Stage::Examine)?;
-        for (input, entry) in inputs.iter().zip(&mut report.inputs) {
-            entry.validity = Some(input::examine(&input.loaded, session)?);
-        }
-        Ok::<(), Failure>(())
+        let progress = &session.progress;
+        inputs.par_iter().zip(&mut report.inputs).try_for_each(|(input, entry)| {
+            entry.validity = Some(input::examine(&input.loaded, progress)?);
+            Ok::<(), Failure>(())
+        })
     })?;
     let operands: Vec<Operand<'_>> = inputs.iter().map(|input| (&input.loaded).into()).collect();
     let meshes: Vec<&TriMesh> = operands.iter().map(|operand| operand.mesh).collect();

@@ -27,9 +27,7 @@ impl Buckets {
         }
         start.copy_within(0..keys, 1);
         start[0] = 0;
-        for bucket in start.windows(2) {
-            sorted[bucket[0] as usize..bucket[1] as usize].sort_unstable();
-        }
+        sort_each(&start, &mut sorted);
         Self { start, items: sorted }
     }
 
@@ -41,6 +39,23 @@ impl Buckets {
     /// Number of keys.
     pub(crate) fn keys(&self) -> usize {
         self.start.len() - 1
+    }
+}
+
+/// So many buckets are sorted at once.
+const AT_ONCE: usize = 1 << 14;
+
+/// Sorts the items of each bucket, which begin where `start` says, counted from its first entry.
+fn sort_each(start: &[u32], items: &mut [u64]) {
+    let buckets = start.len() - 1;
+    if buckets > AT_ONCE {
+        let (low, high) = (&start[..=buckets / 2], &start[buckets / 2..]);
+        let (first, second) = items.split_at_mut((high[0] - start[0]) as usize);
+        rayon::join(|| sort_each(low, first), || sort_each(high, second));
+        return;
+    }
+    for bucket in start.windows(2) {
+        items[(bucket[0] - start[0]) as usize..(bucket[1] - start[0]) as usize].sort_unstable();
     }
 }
 

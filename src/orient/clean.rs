@@ -49,7 +49,7 @@ pub fn clean(input: &TriMesh) -> Cleaned {
         let first = same.iter().find(|entry| even(entry) == wanted).unwrap_or(&same[0]).1;
         kept.push((first, 2 * forward == same.len(), forward != 0 && forward != same.len()));
     }
-    kept.sort_unstable();
+    kept.par_sort_unstable();
     let mut cleaned = Cleaned {
         degenerate,
         duplicates: with_area - kept.len(),

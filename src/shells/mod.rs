@@ -17,6 +17,8 @@ pub use buried::buried;
 pub use contacts::{Contacts, contacts};
 pub use standing::{Fate, StandingOptions, standing};
 
+use rayon::prelude::*;
+
 use crate::ldi::Operands;
 use crate::mesh::edges::{Edges, Union};
 use crate::mesh::{Bounds, TriMesh};
@@ -114,10 +116,11 @@ pub fn shells(mesh: &TriMesh, operands: &Operands) -> Shells {
         }
         members[shell as usize].push(t);
     }
-    let tallies = tallies(mesh, &edges, &shells.of, members.len());
-    let fans = edges.connectivity().fans;
+    let (tallies, connectivity) =
+        rayon::join(|| tallies(mesh, &edges, &shells.of, members.len()), || edges.connectivity());
+    let fans = connectivity.fans;
     shells.list = members
-        .into_iter()
+        .into_par_iter()
         .zip(&tallies)
         .map(|(triangles, tally)| shell(mesh, operands, triangles, tally, &fans))
         .collect();
@@ -175,7 +178,7 @@ fn shell(mesh: &TriMesh, operands: &Operands, triangles: Vec<u32>, tally: &Tally
         area += (b - a).cross(c - a).length() / 2.0;
     }
     let mut vertices: Vec<u32> = triangles.iter().flat_map(|&t| mesh.triangles[t as usize]).collect();
-    vertices.sort_unstable();
+    vertices.par_sort_unstable();
     vertices.dedup();
     let torn = tally.torn || vertices.iter().any(|&v| fans[v as usize] > 1);
     let kind = match (torn, tally.open) {

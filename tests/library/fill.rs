@@ -215,8 +215,8 @@ fn small_sheets_beside_a_body_are_left_out() {
     };
     let alone = with(&[]);
     let (floating, inside) = (wavy(DVec3::new(1.6, 0.0, 0.0), 0.4), wavy(DVec3::new(0.9, -0.1, 0.0), 0.2));
-    for sheets in [&[floating.clone()][..], &[inside.clone()], &[floating, inside]] {
-        let outcome = with(sheets);
+    for sheets in [vec![floating.clone()], vec![inside.clone()], vec![floating, inside]] {
+        let outcome = with(&sheets);
         assert_eq!(outcome.solid.triangles.len(), alone.solid.triangles.len());
         assert!(!outcome.report.lattice && (volume(&outcome.solid) - volume(&alone.solid)).abs() < 1e-12);
         let left = closings(&outcome).iter().filter(|how| **how == HoleClosing::LeftOut).count();
