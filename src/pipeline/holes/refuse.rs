@@ -19,8 +19,12 @@ pub(super) fn refused(
 ) -> Vec<Option<NotLidded>> {
     let (mut area, mut volume) = (vec![0.0; patches.area.len()], patches.volume.clone());
     for &(rim, lid) in lids {
-        let Ok(Made { lid, .. }) = lid else { continue };
         let patch = patches.beside(rim);
+        let Ok(Made { lid, .. }) = lid else {
+            // Whatever closes it is at least so large: over a single triangle as large as that.
+            area[patch] += rim.area;
+            continue;
+        };
         area[patch] += lid.area;
         for triangle in &lid.triangles {
             let [a, b, c] = triangle.map(|v| place(mesh, lid, v));

@@ -4,14 +4,14 @@
 use super::Plan;
 use super::judge::Judge;
 use super::patches::Patches;
-use crate::mesh::{TriMesh, intersections_with};
+use crate::mesh::TriMesh;
 use crate::pipeline::NotLidded;
 use crate::progress::{Progress, Stopped};
 
 /// Sheets that have more than this part of the area of all patches are not left out: what they are pieces of is for rays and voxels to find out.
 const SMALL: f64 = 0.1;
 
-/// For each triangle whether it is of a sheet that is left out; empty where none is. All sheets are left out or none: those that are small, touch nothing, and part no inside from an outside.
+/// For each triangle whether it is of a sheet that is left out; empty where none is. All sheets are left out or none: those that are small, and part no inside from an outside.
 /// All other rims must have lids.
 pub(super) fn left_out(
     plan: &Plan,
@@ -39,9 +39,5 @@ pub(super) fn left_out(
         }
         triangles.iter().for_each(|&t| out[t as usize] = true);
     }
-    let closed = plan.closed(mesh);
-    let mut marked = out.clone();
-    marked.resize(closed.triangles.len(), false);
-    let touches = !intersections_with(&closed, &marked, progress)?.is_empty();
-    Ok(if touches { Vec::new() } else { out })
+    Ok(out)
 }

@@ -35,7 +35,7 @@ pub enum Warning {
     },
     /// Beside the shells that stay as they are, the rest of the input encloses nothing.
     NothingMore(NothingEnclosed),
-    /// Sheets beside a body were left out: they enclose nothing and touch nothing.
+    /// Sheets beside a body were left out: they enclose nothing.
     SheetsLeftOut {
         /// Their triangles.
         triangles: usize,
