@@ -2,7 +2,9 @@
 
 use super::words::{self, UnitName};
 use crate::morphology::Operation;
-use crate::pipeline::{BlockReport, DrainReport, HollowReport, OuterReport, Report, ThickenReport, TriangleKind};
+use crate::pipeline::{
+    BlockReport, DrainReport, HoleClosing, HollowReport, OuterReport, Report, ThickenReport, TriangleKind,
+};
 
 /// What was done, one part of a sentence each.
 pub fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
@@ -86,6 +88,9 @@ fn kept(pipeline: &Report) -> Vec<String> {
     }
     let counts = &pipeline.triangles;
     parts.push(match (counts.cut, counts.rebuilt, counts.made_up) {
+        (0, 0, 0) if pipeline.holes.iter().any(|hole| hole.closed_by == HoleClosing::LeftOut) => {
+            "every triangle that is not of a sheet was kept as it is".into()
+        }
         (0, 0, 0) => "every triangle was kept as it is".into(),
         _ => {
             let some = TriangleKind::BY_CHANGE.into_iter().filter(|&kind| counts.count(kind) > 0);

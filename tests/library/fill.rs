@@ -228,6 +228,16 @@ fn small_sheets_beside_a_body_are_left_out() {
             outcome.report.warnings
         );
     }
+    // Single triangles that stick in a box.
+    let mut pierced = cuboid(DVec3::ZERO, DVec3::ONE);
+    for n in 0..8 {
+        let at = DVec3::new(0.1 + 0.1 * f64::from(n), 0.07 * f64::from(n), 0.95);
+        let positions = vec![at, at + DVec3::new(0.05, 0.01, 0.1), at + DVec3::new(-0.03, 0.08, 0.02)];
+        pierced.append(&TriMesh { positions, triangles: vec![[0, 1, 2]] });
+    }
+    let outcome = repaired(&pierced, &options(Style::Auto));
+    assert!(!outcome.report.lattice && outcome.solid.triangles.len() == 12);
+    assert!(outcome.report.warnings.contains(&Warning::SheetsLeftOut { triangles: 8 }));
     let large = with(&[wavy(DVec3::new(1.6, -0.7, 0.0), 1.4)]);
     assert!(large.report.lattice && !closings(&large).contains(&HoleClosing::LeftOut));
     // The sides of a box with gaps between them.

@@ -142,9 +142,9 @@ impl Plan {
         (triangles > 0).then_some(Warning::SheetsLeftOut { triangles })
     }
 
-    /// Whether no rim has one.
+    /// Whether the soup stays as it is: no rim has a lid, and no sheet is left out.
     pub fn is_empty(&self) -> bool {
-        self.lids.iter().all(Result::is_err)
+        self.lids.iter().all(Result::is_err) && self.left_out.is_empty()
     }
 
     /// What there is to say of each rim.
