@@ -20,6 +20,9 @@ const UNLIKE: f64 = 3.0;
 /// The gap between them is at most so long as this part of the shorter one; about as wide as what they are the rims of.
 const GAP: f64 = 0.35;
 
+/// The rim of an inner side lies at most so much of the gap behind or before that of an outer one, across the plane of the first.
+const BEHIND: f64 = 0.5;
+
 /// Two rims that a band joins, and its triangles over the edges of each.
 pub(super) struct Band {
     pub rims: [usize; 2],
@@ -69,6 +72,7 @@ fn facing(plan: &Plan, mesh: &TriMesh) -> Vec<(f64, [usize; 2])> {
     };
     // What has no lid for the sake of another part has none to be joined with for its own.
     let for_others = |n: usize| matches!(lids[n], Err(NotLidded::Beside));
+    let is_inner = |n: usize| matches!(lids[n], Err(NotLidded::FacesInwards));
     let list: Vec<usize> = (0..rims.len()).filter(alone).take(MOST).collect();
     let mut pairs = Vec::new();
     for (k, &n) in list.iter().enumerate() {
@@ -79,10 +83,13 @@ fn facing(plan: &Plan, mesh: &TriMesh) -> Vec<(f64, [usize; 2])> {
             if apart || long > UNLIKE * short || (for_others(n) && for_others(m)) {
                 continue;
             }
-            let gap = between(mesh, a, b).max(between(mesh, b, a)) / short;
-            if gap <= GAP {
-                pairs.push((gap, [n, m]));
+            let gap = between(mesh, a, b).max(between(mesh, b, a));
+            // The ends of a wall lie beside each other; holes in both of its sides, which a band would make a bore of, lie behind each other.
+            let behind = (b.centre - a.centre).dot(a.plane.normal).abs();
+            if gap > GAP * short || (is_inner(n) || is_inner(m)) && behind > BEHIND * gap {
+                continue;
             }
+            pairs.push((gap / short, [n, m]));
         }
     }
     pairs
