@@ -9,6 +9,7 @@ use super::{BooleanError, Draft, TriangleSource};
 use crate::arrange::{ArrangeError, ArrangeReport};
 use crate::mesh::Submesh;
 use crate::progress::Stage;
+use crate::shells::Shell;
 use crate::survey::Soup;
 
 impl Job<'_> {
@@ -51,18 +52,15 @@ impl Job<'_> {
         let apart = Apart::find(closed, self.expression, self.options, self.progress)?;
         let Some(over) = apart.all_bound() else { return Ok(None) };
         let mut mesh = self.options.precision.of_mesh(&closed.mesh).into_owned();
-        for (t, triangle) in mesh.triangles.iter_mut().enumerate() {
-            if over[apart.shells.of[t] as usize] {
-                triangle.swap(1, 2);
-            }
-        }
-        let turned = over.iter().filter(|over| **over).count();
-        let turned_triangles = (0..mesh.triangles.len()).filter(|&t| over[apart.shells.of[t] as usize]).count();
+        let turned: Vec<&Shell> =
+            apart.shells.list.iter().zip(&over).filter(|entry| *entry.1).map(|entry| entry.0).collect();
+        let turned_triangles = turned.iter().flat_map(|shell| &shell.triangles);
+        turned_triangles.clone().for_each(|&t| mesh.triangles[t as usize].swap(1, 2));
         let report = ArrangeReport {
             triangles: mesh.triangles.len(),
             cells: apart.shells.list.len() + 1,
-            turned: vec![turned],
-            turned_triangles: vec![turned_triangles],
+            turned: vec![turned.len()],
+            turned_triangles: vec![turned_triangles.count()],
             ..ArrangeReport::default()
         };
         let sources = (0..mesh.triangles.len() as u32).map(|t| TriangleSource::in_soup(closed, t)).collect();

@@ -74,9 +74,9 @@ pub(super) fn planned(soup: &Soup, options: &Options, progress: &Progress) -> Re
         return Ok(plan);
     }
     let Plan { rims, .. } = plan;
-    let patches = patches.clone().joined(bands.iter().map(|band| band.rims.map(|n| &rims[n])));
+    let patches = patches.joined(bands.iter().map(|band| band.rims.map(|n| &rims[n])));
     let judge = Judge::new(&around, soup, (&patches, &rims), options.orient, progress)?;
-    let maker = Maker { patches: &patches, judge: &judge, ..maker };
+    let maker = Maker { around: &around, patches: &patches, judge: &judge, style: options.fill };
     Plan::lidded(rims, bands, &maker, progress)
 }
 
@@ -224,20 +224,13 @@ impl Plan {
         }
     }
 
-    /// The mesh with the lids, whose triangles come last.
-    fn closed(&self, mesh: &TriMesh) -> TriMesh {
-        let (lids, _) = self.lids_of(mesh);
+    /// The rims whose lids meet each other, themselves, or the mesh.
+    fn meeting(&self, mesh: &TriMesh, progress: &Progress) -> Result<Vec<usize>, Stopped> {
+        let (lids, of) = self.lids_of(mesh);
+        let own = mesh.triangles.len();
         let mut closed = mesh.clone();
         closed.positions.extend_from_slice(&lids.positions);
         closed.triangles.extend_from_slice(&lids.triangles);
-        closed
-    }
-
-    /// The rims whose lids meet each other, themselves, or the mesh.
-    fn meeting(&self, mesh: &TriMesh, progress: &Progress) -> Result<Vec<usize>, Stopped> {
-        let own = mesh.triangles.len();
-        let closed = self.closed(mesh);
-        let (_, of) = self.lids_of(mesh);
         let is_lid: Vec<bool> = (0..closed.triangles.len()).map(|t| t >= own).collect();
         let found = intersections_with(&closed, &is_lid, progress)?;
         let mut meeting: Vec<usize> =

@@ -7,7 +7,6 @@ use crate::mesh::{Bounds, TriMesh};
 use crate::survey::Soup;
 
 /// The patches of a soup.
-#[derive(Clone)]
 pub(super) struct Patches {
     /// For each vertex a patch that has it.
     at: Vec<usize>,
