@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::contour::Ground;
 use crate::mesh::around::Around;
 use crate::mesh::neighbours::Neighbours;
-use crate::mesh::{Plane, TriMesh};
+use crate::mesh::{Bounds, Plane, TriMesh};
 
 /// Planes that turn by less (cosine, 20°) belong to one smooth piece.
 pub(super) const SMOOTH: f64 = 0.94;
@@ -108,6 +108,8 @@ pub struct Facets<'a> {
     classes: Vec<u32>,
     /// How far a point is from the surface that is wanted, model units, where that is known.
     target: Option<TargetDistance<'a>>,
+    /// Where the surface that is wanted is, model units, if the contour was cut off around that.
+    window: Option<Bounds>,
 }
 
 /// The target distance: how far a point (model units) is from the surface that is wanted, in model units.
@@ -124,7 +126,15 @@ impl<'a> Facets<'a> {
         let mut all: Vec<Plane> = (0..count).into_par_iter().map(|t| Plane::through(mesh.corners(t))).collect();
         all.extend(planes);
         let neighbours = Neighbours::new(&mesh.triangles, mesh.positions.len());
-        Self { mesh, planes: all, neighbours, around: Around::new(mesh), classes: Vec::new(), target: None }
+        Self {
+            mesh,
+            planes: all,
+            neighbours,
+            around: Around::new(mesh),
+            classes: Vec::new(),
+            target: None,
+            window: None,
+        }
     }
 
     /// The same facets with a number, the class, for each triangle: simplification moves no surface over the border between
@@ -132,6 +142,18 @@ impl<'a> Facets<'a> {
     pub fn with_classes(mut self, classes: Vec<u32>) -> Self {
         self.classes = classes;
         self
+    }
+
+    /// The same facets for a contour that was cut off around a window, model units, and closed along the cut: beyond the window all of the
+    /// surface that is wanted are triangles that are kept.
+    pub fn with_window(mut self, window: Option<Bounds>) -> Self {
+        self.window = window;
+        self
+    }
+
+    /// Whether a point of the contour is beyond the window, where it is not wanted.
+    pub(super) fn is_beyond(&self, p: DVec3) -> bool {
+        self.window.as_ref().is_some_and(|w| (p.cmplt(w.min) | p.cmpgt(w.max)).any())
     }
 
     /// The same facets with a judge of creases. Planes that touch something round meet beside it, and a crease there would be

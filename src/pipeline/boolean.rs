@@ -131,6 +131,10 @@ impl Task<'_> {
                 if let Exact::Done(draft) = job.lidded(&rest, &holes, &standing, &mut stages)? {
                     return Ok(account::finished(*draft, &apart, stages));
                 }
+                if let Some(mut draft) = job.within_window(&rest, &holes, &standing, &mut stages)? {
+                    draft.report.holes = holes.reports();
+                    return Ok(account::finished(draft, &apart, stages));
+                }
                 if crosses && let Some(mut draft) = self.cut_first(&rest, &mut stages)? {
                     draft.report.stages = stages.finish();
                     return Ok(draft);

@@ -45,6 +45,7 @@ mod textures;
 mod thicken;
 mod thickness;
 mod topology;
+mod window;
 mod work;
 
 pub use advice::{Advice, Trouble};

@@ -9,7 +9,7 @@ use crate::contour::{ContourOptions, contour};
 use crate::fit::{Facets, fit};
 use crate::lattice::Lattice;
 use crate::ldi::Expression;
-use crate::mesh::TriMesh;
+use crate::mesh::{Bounds, TriMesh};
 use crate::progress::{Progress, Stage};
 use crate::sdf;
 use crate::survey::{Cast, CastOptions, Soup, Survey};
@@ -23,6 +23,16 @@ pub(super) struct Job<'a> {
     /// The voxel size of the options, model units.
     pub h: f64,
     pub progress: &'a Progress,
+}
+
+/// Where voxels are.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ground {
+    pub lattice: Lattice,
+    /// The finest voxel that a lattice around the whole soup can have, model units.
+    pub finest: f64,
+    /// Where surface is to be made, model units, if the lattice does not hold the whole soup: all of it beyond that must stay.
+    pub window: Option<Bounds>,
 }
 
 /// Where what is made runs into what stands, the gap between them is too thin for the voxels: they are halved this often.
@@ -79,12 +89,18 @@ impl Job<'_> {
         }
     }
 
-    /// What voxels of size `h`, model units, make of a soup: the drawing in the crate's documentation, from rays to fit.
+    /// What voxels of size `h`, model units, make of a soup.
     pub(super) fn alone(&self, soup: Soup, h: f64, stages: &mut Stages<'_>) -> Result<Draft, BooleanError> {
-        let Self { expression, options, progress, .. } = *self;
         let bounds = soup.mesh.bounds().ok_or(BooleanError::Empty { operand: 0 })?;
-        let finest = sizing::finest(&bounds);
         let lattice = sizing::lattice(&bounds, VoxelSize::Length(h))?;
+        self.on(&Ground { lattice, finest: sizing::finest(&bounds), window: None }, soup, stages)
+    }
+
+    /// What voxels make of a soup: the drawing in the crate's documentation, from rays to fit.
+    pub(super) fn on(&self, ground: &Ground, soup: Soup, stages: &mut Stages<'_>) -> Result<Draft, BooleanError> {
+        let Self { expression, options, progress, .. } = *self;
+        let Ground { lattice, finest, window } = *ground;
+        let h = lattice.h;
         plan::check_limits(&[&soup.mesh], &lattice, &options.surface(), plan::Offsets::default())?;
         stages.begin(Stage::Ldi)?;
         let rays = self.rays(&soup.mesh, &lattice);
@@ -107,7 +123,8 @@ impl Job<'_> {
         }
         let lids = refine::lids(&mut raw, &survey, &winding, progress)?;
         stages.begin(Stage::Collapse)?;
-        let facets = Facets::new(&survey.soup.mesh, lids).with_classes(survey.soup.classes(self.classes));
+        let facets =
+            Facets::new(&survey.soup.mesh, lids).with_classes(survey.soup.classes(self.classes)).with_window(window);
         let mut surface = refine::merged(raw, &facets, &lattice, &options.surface(), progress)?;
         let mut report = Report::surveyed(&survey, &votes, made_by, finest);
         if let Some(options) = &options.fit {

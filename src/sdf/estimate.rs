@@ -84,7 +84,10 @@ fn points(spans: &Spans, bricks: &Bricks) -> Vec<(u32, Point)> {
         let (u, v) = layers.position(ray);
         for hit in hits {
             let p = layers.direction.unshear(u, v, hit.depth);
-            let brick = brick_of(p.as_ivec3()); // no coordinate is negative
+            if p.cmplt(DVec3::ZERO).any() {
+                continue; // beyond the lattice
+            }
+            let brick = brick_of(p.as_ivec3());
             if brick != last.0 {
                 last = (brick, bricks.slot(brick));
             }

@@ -3,11 +3,10 @@
 
 use std::cell::OnceCell;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
-use super::boundary::Loops;
 use super::dipoles::{Dipoles, WindingTree, complete};
-use super::expansion::Expansion;
+use super::loop_tree::Nearby;
 use super::rim::Rim;
 use crate::ldi::Inside;
 
@@ -25,7 +24,7 @@ pub(super) struct Block<'w> {
     radius: f64,
     dipoles: Dipoles<'w>,
     /// Made when it is first needed; `None` for a closed operand.
-    boundary: OnceCell<Option<Boundary>>,
+    boundary: OnceCell<Option<Nearby>>,
 }
 
 impl<'w> Block<'w> {
@@ -47,37 +46,13 @@ impl<'w> Block<'w> {
 
     /// The winding number over ½ but for a whole number.
     fn above(&self, p: DVec3) -> f64 {
-        let boundary = self.boundary.get_or_init(|| Boundary::new(self.rim, self.centre, self.radius));
-        let Some(boundary) = boundary else { return -0.5 };
+        let near = || self.rim.loops().map(|loops| loops.around(self.centre, self.radius, FAR));
+        let Some(boundary) = self.boundary.get_or_init(near) else { return -0.5 };
         let above = boundary.above(p);
         if above.abs() > UNSURE {
             return above;
         }
         self.rim.view(p, 0.0).map_or(above, |view| view.above(p))
-    }
-}
-
-/// The boundary of an operand near a block.
-struct Boundary {
-    far: Expansion,
-    near: Loops,
-}
-
-impl Boundary {
-    fn new(rim: &Rim, centre: DVec3, radius: f64) -> Option<Self> {
-        let mut far = Expansion::about(centre);
-        let near = rim.loops()?.visit(centre, radius, FAR, |group| {
-            far.add_dipole(group.centre, group.dipole);
-            far.add(group.quadrupole_angle(centre));
-        });
-        Some(Self { far, near })
-    }
-
-    /// The winding number over ½ but for a whole number.
-    fn above(&self, p: DVec3) -> f64 {
-        let mut turn = self.near.turn(p);
-        turn.times(DVec2::from_angle(0.5 * self.far.at(p)));
-        turn.above()
     }
 }
 

@@ -37,6 +37,18 @@ impl Expansion {
         self.gradient += gradient;
     }
 
+    /// Adds something by its value, gradient and second derivatives at the centre.
+    pub(super) fn add_bent(&mut self, (value, gradient, hessian): (f64, DVec3, DMat3)) {
+        self.add((value, gradient));
+        self.hessian += hessian;
+    }
+
+    /// The gradient at `p`.
+    pub(super) fn gradient(&self, p: DVec3) -> DVec3 {
+        self.gradient + self.hessian * (p - self.centre)
+    }
+
+    /// The solid angle at `p`.
     pub(super) fn at(&self, p: DVec3) -> f64 {
         let x = p - self.centre;
         self.value + self.gradient.dot(x) + 0.5 * x.dot(self.hessian * x)

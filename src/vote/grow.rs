@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::tally::{Jury, Votes};
-use crate::lattice::{BRICK_VOXELS, Bricks, Grid, brick_of, index_in_brick};
+use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, brick_of, index_in_brick};
 use crate::ldi::Spans;
 use crate::progress::{Progress, Stopped};
 
@@ -27,11 +27,19 @@ const FACES: [(IVec3, usize, usize); 6] = [
 
 /// Votes on all voxels near the surface. Any two neighbouring voxels of which one is inside and
 /// the other outside lie in active bricks; every inactive brick has the class of the voxels next
-/// to it.
+/// to it. What is beyond the lattice is outside: sheets that face one another can hold a winding number above ½ far beyond their box.
 pub fn vote_near_surface(jury: &Jury<'_>, progress: &Progress) -> Result<Grid<Votes>, Stopped> {
     let mut known: FxHashMap<IVec3, BrickVotes> = FxHashMap::default();
     let mut uniform: FxHashMap<IVec3, bool> = FxHashMap::default();
+    let border = Border::of(jury.winding.dims());
     let mut wanted = bricks_with_crossings(jury.spans);
+    wanted.retain(|&brick| border.holds(brick));
+    if jury.winding.reaches_beyond() {
+        // All of the border may lie inside.
+        wanted.extend(border.bricks());
+        wanted.sort_unstable_by_key(|b| (b.z, b.y, b.x));
+        wanted.dedup();
+    }
     while !wanted.is_empty() {
         let votes = vote(jury, &wanted, progress)?;
         known.extend(wanted.iter().copied().zip(votes));
@@ -49,7 +57,7 @@ pub fn vote_near_surface(jury: &Jury<'_>, progress: &Progress) -> Result<Grid<Vo
             }
         }
         if next.is_empty() {
-            next = conflicts(&known, &mut uniform);
+            next = conflicts(&known, &mut uniform, &border);
         }
         next.sort_unstable_by_key(|b| (b.z, b.y, b.x));
         next.dedup();
@@ -81,7 +89,7 @@ fn bricks_with_crossings(spans: &[Spans]) -> Vec<IVec3> {
                 let (i, j) = layers.indices(ray);
                 let (u, v) = layers.position(ray);
                 for hit in hits {
-                    // Depths are not negative, so conversion rounds down.
+                    // Conversion rounds down, but for what is beyond the lattice anyway.
                     let t = hit.depth as i32;
                     let before = direction.unshear_voxel(i.div_euclid(factor), j.div_euclid(factor), t);
                     let behind = before + direction.vector();
@@ -124,6 +132,34 @@ fn face(votes: &[Votes; BRICK_VOXELS], axis: usize, side: usize) -> Face {
     Face { inside, uniform, unanimous }
 }
 
+/// The bricks that have voxels of the lattice.
+struct Border {
+    count: IVec3,
+}
+
+impl Border {
+    fn of(dims: IVec3) -> Self {
+        Self { count: (dims + BRICK - 1) / BRICK }
+    }
+
+    /// Whether a brick has voxels of the lattice.
+    fn holds(&self, brick: IVec3) -> bool {
+        brick.cmpge(IVec3::ZERO).all() && brick.cmplt(self.count).all()
+    }
+
+    /// Those that lie beside ones that have none.
+    fn bricks(&self) -> impl Iterator<Item = IVec3> {
+        let d = self.count;
+        let all = (0..d.z).flat_map(move |z| (0..d.y).flat_map(move |y| (0..d.x).map(move |x| IVec3::new(x, y, z))));
+        all.filter(|&brick| self.is_at(brick))
+    }
+
+    /// Whether a brick that has some lies beside one that has none.
+    fn is_at(&self, brick: IVec3) -> bool {
+        self.holds(brick) && (brick.cmpeq(IVec3::ZERO) | brick.cmpeq(self.count - 1)).any()
+    }
+}
+
 /// Bricks beside the `fresh` ones into which the surface may go on: across a face whose voxels
 /// differ, or on which the directions do not all agree.
 fn neighbours_in_doubt(
@@ -151,7 +187,11 @@ fn neighbours_in_doubt(
 
 /// Sets the class of the inactive bricks beside active ones; returns those that have to become
 /// active because their neighbours disagree about them, or because two of them that touch differ.
-fn conflicts(known: &FxHashMap<IVec3, BrickVotes>, uniform: &mut FxHashMap<IVec3, bool>) -> Vec<IVec3> {
+fn conflicts(
+    known: &FxHashMap<IVec3, BrickVotes>,
+    uniform: &mut FxHashMap<IVec3, bool>,
+    border: &Border,
+) -> Vec<IVec3> {
     let mut bricks: Vec<IVec3> = known.keys().copied().collect();
     bricks.sort_unstable_by_key(|b| (b.z, b.y, b.x));
     let mut next = Vec::new();
@@ -160,6 +200,9 @@ fn conflicts(known: &FxHashMap<IVec3, BrickVotes>, uniform: &mut FxHashMap<IVec3
             let other = brick + step;
             if !known.contains_key(&other) {
                 let face = face(&known[&brick], axis, side);
+                if !border.holds(other) {
+                    uniform.insert(other, false);
+                }
                 if *uniform.entry(other).or_insert(face.inside) != face.inside || !face.uniform {
                     next.push(other);
                 }
@@ -169,6 +212,9 @@ fn conflicts(known: &FxHashMap<IVec3, BrickVotes>, uniform: &mut FxHashMap<IVec3
     let mut tiles: Vec<(IVec3, bool)> = uniform.iter().map(|(&b, &inside)| (b, inside)).collect();
     tiles.sort_unstable_by_key(|(b, _)| (b.z, b.y, b.x));
     for &(brick, inside) in &tiles {
+        if inside && border.is_at(brick) {
+            next.push(brick);
+        }
         for step in [IVec3::X, IVec3::Y, IVec3::Z] {
             if uniform.get(&(brick + step)).is_some_and(|&other| other != inside) {
                 next.extend([brick, brick + step]);

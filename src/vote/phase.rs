@@ -7,7 +7,7 @@
 //! and without a branch to choose. The gradient of the solid angle is the field of a current along
 //! the boundary (Biot–Savart), closed form for straight edges; it does not depend on the point.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use super::boundary::Loops;
 
@@ -32,7 +32,7 @@ pub(super) struct Phase {
 }
 
 impl Phase {
-    /// From `turn`, in the direction of exp(2πi w), and the sum of [`SeenEdge::current`]s.
+    /// From `turn`, in the direction of exp(2πi w), and the gradient of the solid angle.
     pub(super) fn new(turn: Product, currents: DVec3) -> Self {
         Self { above: turn.above(), gradient: currents / FOUR_PI }
     }
@@ -55,6 +55,11 @@ impl Product {
     #[inline]
     fn shorten(&mut self) {
         self.0 /= self.0.abs().max_element().max(f64::MIN_POSITIVE);
+    }
+
+    /// The solid angle that it is turned by, but for whole turns.
+    fn solid_angle(self) -> f64 {
+        2.0 * self.0.y.atan2(self.0.x)
     }
 
     /// For a product in the direction of exp(2πi w): w - ½ plus a whole number, in [-½, ½].
@@ -114,9 +119,27 @@ impl SeenEdge {
     /// What the edge adds to the gradient of the solid angle.
     #[inline]
     fn current(&self) -> DVec3 {
+        self.cross * self.strength()
+    }
+
+    #[inline]
+    fn strength(&self) -> f64 {
         let [a, b] = &self.ends;
         let squared = self.product * self.open;
-        self.cross * if squared > 0.0 { (a.distance + b.distance) / squared } else { 0.0 }
+        if squared > 0.0 { (a.distance + b.distance) / squared } else { 0.0 }
+    }
+
+    /// What the edge adds to the second derivatives of the solid angle: those of [`Self::current`] by the point.
+    fn bend(&self) -> DMat3 {
+        let [a, b] = self.ends;
+        let (strength, span) = (self.strength(), b.way - a.way);
+        let [along_a, along_b] = [a, b].map(|end| -end.way / end.distance);
+        let of_product = along_a * b.distance + along_b * a.distance;
+        let dot = self.open - self.product;
+        let of_squared = of_product * (2.0 * self.product + dot) - (a.way + b.way) * self.product;
+        let of_strength = (along_a + along_b - of_squared * strength) / (self.product * self.open);
+        let column = |axis: DVec3| span.cross(axis) * strength + self.cross * of_strength.dot(axis);
+        DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))
     }
 }
 
@@ -132,6 +155,16 @@ impl Loops {
         let mut currents = DVec3::ZERO;
         let turn = self.turn_with(p, |span| currents += span.current());
         (turn, currents)
+    }
+
+    /// The solid angle at `p`, but for whole turns, its gradient and its second derivatives. `p` is not on an edge.
+    pub(super) fn solid_angle(&self, p: DVec3) -> (f64, DVec3, DMat3) {
+        let (mut gradient, mut hessian) = (DVec3::ZERO, DMat3::ZERO);
+        let turn = self.turn_with(p, |span| {
+            gradient += span.current();
+            hessian += span.bend();
+        });
+        (turn.solid_angle(), gradient, hessian)
     }
 
     /// The product alone.
@@ -208,6 +241,22 @@ pub(super) mod tests {
                 let gradient = by_differences(|q| loops.phase(q).above, p, 1e-5);
                 let size = phase.gradient.length();
                 assert!(phase.gradient.distance(gradient) < 1e-5 * (1.0 + size), "{phase:?} and {gradient} at {p}");
+            }
+        }
+    }
+
+    #[test]
+    fn second_derivatives_are_those_of_the_gradient() {
+        let loops = loops(&sphere(24, 150));
+        for p in places(50) {
+            let (angle, gradient, hessian) = loops.solid_angle(p);
+            let phase = loops.phase(p);
+            let turns = angle / FOUR_PI - 0.5 - phase.above;
+            assert!((turns - turns.round()).abs() < 1e-12 && gradient.distance(phase.gradient * FOUR_PI) < 1e-9);
+            for axis in DVec3::AXES {
+                let at = |step: f64| loops.solid_angle(p + axis * step).1;
+                let change = (at(1e-5) - at(-1e-5)) / 2e-5;
+                assert!(change.distance(hessian * axis) < 1e-5 * (1.0 + change.length()), "{change} at {p}");
             }
         }
     }

@@ -3,13 +3,17 @@
 use glam::DVec3;
 
 use super::boundary::Loops;
-use super::loop_tree::{LoopTree, Nearby};
+use super::loop_tree::{LoopTree, Nearby, cut};
 use super::phase::Phase;
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
 
 /// Up to so many boundary edges are summed one by one. 2048 take 17 µs for each point.
 const MOST_EXACT: usize = 2048;
+
+/// Of more, what is this many radii away, its own and the place's together, is far: errors up to 0.0006 where a third of a sphere's triangles
+/// are missing; 4 leaves 0.0012.
+const FAR: f64 = 5.0;
 
 /// The boundary of one operand, ready to be asked.
 #[derive(Debug, Clone)]
@@ -25,7 +29,7 @@ pub(super) enum View<'r> {
     /// Few edges: exact.
     Short(&'r Loops),
     /// Many: what is far in groups.
-    Long(Nearby<'r>),
+    Long(Box<Nearby>),
 }
 
 impl Rim {
@@ -35,8 +39,10 @@ impl Rim {
         if loops.edges() == 0 {
             return Ok(Self { tree: None, loops: None });
         }
-        let tree = Some(LoopTree::new(&loops, progress)?);
-        Ok(Self { tree, loops: Some(loops).filter(|loops| loops.edges() <= MOST_EXACT) })
+        if loops.edges() <= MOST_EXACT {
+            return Ok(Self { tree: Some(LoopTree::new(&loops, progress)?), loops: Some(loops) });
+        }
+        Ok(Self { tree: Some(LoopTree::new(&cut(&loops), progress)?), loops: None })
     }
 
     /// The boundary in groups; `None` for a closed operand.
@@ -48,7 +54,7 @@ impl Rim {
     pub(super) fn view(&self, centre: DVec3, radius: f64) -> Option<View<'_>> {
         match &self.loops {
             Some(loops) => Some(View::Short(loops)),
-            None => self.tree.as_ref().map(|tree| View::Long(tree.around(centre, radius))),
+            None => self.tree.as_ref().map(|tree| View::Long(Box::new(tree.around(centre, radius, FAR)))),
         }
     }
 }
@@ -66,7 +72,7 @@ impl View<'_> {
     pub(super) fn above(&self, p: DVec3) -> f64 {
         match self {
             Self::Short(loops) => loops.turn(p).above(),
-            Self::Long(nearby) => nearby.at(p).above,
+            Self::Long(nearby) => nearby.above(p),
         }
     }
 }

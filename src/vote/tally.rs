@@ -92,13 +92,19 @@ impl Jury<'_> {
             let (inside, valid) = (counts.inside[row].to_le_bytes(), counts.valid[row].to_le_bytes());
             for (x, votes) in votes.iter_mut().enumerate() {
                 *votes = Votes { inside: inside[x], valid: valid[x], is_inside: false };
-                votes.is_inside = self.decide(*votes, base + voxel_in_brick(8 * row + x));
+                let voxel = base + voxel_in_brick(8 * row + x);
+                votes.is_inside = self.holds(voxel) && self.decide(*votes, voxel);
             }
         }
         if self.rule == VoteRule::Winding {
             self.ask_winding(base, &mut votes)?;
         }
         Ok(votes)
+    }
+
+    /// Whether a voxel is one of the lattice's: all others are outside.
+    fn holds(&self, voxel: IVec3) -> bool {
+        voxel.cmpge(IVec3::ZERO).all() && voxel.cmplt(self.winding.dims()).all()
     }
 
     fn decide(&self, votes: Votes, voxel: IVec3) -> bool {
@@ -114,7 +120,8 @@ impl Jury<'_> {
         for block in 0..8 {
             let first = IVec3::new(block & 1, block >> 1 & 1, block >> 2) * 4;
             let offsets = (0..64).map(|n| IVec3::new(n & 3, n >> 2 & 3, n >> 4));
-            let unclear: Vec<IVec3> = offsets.filter(|&k| !votes[index_in_brick(first + k)].clear()).collect();
+            let is_unclear = |&k: &IVec3| !votes[index_in_brick(first + k)].clear() && self.holds(base + first + k);
+            let unclear: Vec<IVec3> = offsets.filter(is_unclear).collect();
             if !unclear.is_empty() {
                 self.winding.decide(base + first, &unclear, self.expression, |k, inside| {
                     votes[index_in_brick(first + k)].is_inside = inside;
@@ -191,9 +198,10 @@ fn row_axis(direction: Direction) -> usize {
 fn depths_inside(hits: &[Hit], base: i32) -> u8 {
     let mut mask = 0u16;
     for span in hits.chunks_exact(2) {
-        // The voxel at depth t is inside when entry < t <= exit. Depths are not negative.
-        let from = (span[0].depth as i32 + 1 - base).clamp(0, 8);
-        let to = (span[1].depth as i32 + 1 - base).clamp(0, 8);
+        // The voxel at depth t is inside when entry < t <= exit. Cut off at -1, depths that are negative round down, too.
+        let after = |depth: f64| (depth.max(-1.0) + 1.0) as i32;
+        let from = (after(span[0].depth) - base).clamp(0, 8);
+        let to = (after(span[1].depth) - base).clamp(0, 8);
         mask |= ((1 << to) - 1) & !((1u16 << from) - 1);
     }
     mask as u8

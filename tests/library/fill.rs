@@ -377,3 +377,68 @@ fn cracks_of_rounding_close_and_larger_ones_do_when_that_is_asked_for() {
     let outcome = repaired(&torn(0.01), &options(Style::Auto));
     assert!(outcome.report.zip.is_none() && outcome.report.lattice);
 }
+
+/// A bar with a pit in its underside, whose tip looks out of an opening of the top: no lid over the rim there misses it. Besides, a small hole at the far end.
+fn pierced_bar() -> TriMesh {
+    let step = 0.25;
+    let at = |x: usize, y: usize, z: f64| DVec3::new(x as f64 * step, y as f64 * step, z);
+    let low = |x: usize, y: usize| at(x, y, if (x, y) == (4, 2) { 1.3 } else { 0.0 });
+    let high = |x: usize, y: usize| at(x, y, 1.0);
+    let mut quads: Vec<[DVec3; 4]> = Vec::new();
+    for (x, y) in (0..48).flat_map(|x| (0..4).map(move |y| (x, y))) {
+        let corners = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)];
+        let [a, b, c, d] = corners.map(|(x, y)| low(x, y));
+        quads.push([d, c, b, a]);
+        let is_open = (2..6).contains(&x) && (1..3).contains(&y) || (x, y) == (44, 1);
+        if !is_open {
+            quads.push(corners.map(|(x, y)| high(x, y)));
+        }
+    }
+    for x in 0..48 {
+        quads.push([low(x, 0), low(x + 1, 0), high(x + 1, 0), high(x, 0)]);
+        quads.push([low(x + 1, 4), low(x, 4), high(x, 4), high(x + 1, 4)]);
+    }
+    for y in 0..4 {
+        quads.push([low(48, y), low(48, y + 1), high(48, y + 1), high(48, y)]);
+        quads.push([low(0, y + 1), low(0, y), high(0, y), high(0, y + 1)]);
+    }
+    let mut triangles: Vec<[DVec3; 3]> = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    for _ in 0..2 {
+        let cut = |[a, b, c]: [DVec3; 3]| {
+            let (d, e, f) = ((a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0);
+            [[a, d, f], [d, b, e], [f, e, c], [d, e, f]]
+        };
+        triangles = triangles.into_iter().flat_map(cut).collect();
+    }
+    let numbers = (0..triangles.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]);
+    TriMesh { triangles: numbers.collect(), positions: triangles.into_iter().flatten().collect() }.welded()
+}
+
+#[test]
+fn voxels_lie_around_the_hole_alone_that_no_lid_closes() {
+    let open = pierced_bar();
+    let outcome = repaired(&open, &options(Style::Auto));
+    let found = closings(&outcome);
+    assert!(matches!(found[..], [HoleClosing::Voxels(_), HoleClosing::Lid(_)]), "{found:?}");
+    // The rim is 1.1 across: a tenth of the bar.
+    let size = outcome.lattice.dims.as_dvec3() * outcome.lattice.h;
+    assert!(outcome.report.lattice && size.max_element() < 3.0, "{size}");
+    let far = |t: usize| open.corners(t).iter().all(|p| p.x > 4.0);
+    let mut own: Vec<u32> = Vec::new();
+    for (t, source) in outcome.sources.iter().enumerate() {
+        match *source {
+            TriangleSource::Operand { triangle, .. } if far(triangle as usize) => {
+                assert_eq!(outcome.solid.corners(t), open.corners(triangle as usize), "{triangle} stays");
+                own.push(triangle);
+            }
+            TriangleSource::Closed => assert!(outcome.solid.corners(t).iter().all(|p| p.x < 2.0)),
+            _ => {}
+        }
+    }
+    own.sort_unstable();
+    assert_eq!(own, (0..open.triangles.len() as u32).filter(|&t| far(t as usize)).collect::<Vec<_>>());
+    // As from voxels of the whole bar, of the same size.
+    let whole = Options { method: Method::Voxel, ..Options::new(VoxelSize::Length(outcome.lattice.h)) };
+    let off = volume(&outcome.solid) / volume(&repaired(&open, &whole).solid) - 1.0;
+    assert!(off.abs() < 1e-3, "{off}");
+}

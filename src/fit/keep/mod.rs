@@ -75,6 +75,10 @@ pub(super) fn keep(
         for t in 0..kept.is.len() {
             kept.is[t] &= gone.binary_search(&border.component[t]).is_err();
         }
+        if gone.is_empty() && near.is_empty() {
+            // Nothing would be different the next time.
+            break;
+        }
     }
     Ok((initial.clone(), 0))
 }

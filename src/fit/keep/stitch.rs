@@ -18,6 +18,9 @@ const FARTHEST: f64 = 1.5;
 /// Vertices of the contour nearer to the border than this, h, go with the kept triangles.
 const CLEAR: f64 = 0.5;
 
+/// In place of a component: where the contour is not wanted, whatever it lies on.
+const CUT_OFF: u32 = NONE - 1;
+
 /// Where the two do not join.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Misfit {
@@ -44,7 +47,9 @@ pub(super) fn joined(
     border: &Border,
     h: f64,
 ) -> Result<Joined, Misfit> {
-    let labels: Vec<u32> = initial.sides.par_iter().map(|sides| label(sides, kept, border)).collect();
+    let labelled = initial.sides.par_iter().zip(&initial.mesh.positions);
+    let labels = labelled.map(|(sides, &at)| if facets.is_beyond(at) { CUT_OFF } else { label(sides, kept, border) });
+    let labels: Vec<u32> = labels.collect();
     let labels = with_those_beside(initial, border, labels, h);
     let unseen = unseen(&labels, border);
     if !unseen.is_empty() {
@@ -103,7 +108,7 @@ fn with_those_beside(initial: &Surface, border: &Border, labels: Vec<u32>, h: f6
 /// The components with a border on which the contour has no vertex.
 fn unseen(labels: &[u32], border: &Border) -> Vec<u32> {
     let mut seen = vec![false; border.component.len()];
-    labels.iter().filter(|&&c| c != NONE).for_each(|&c| seen[c as usize] = true);
+    labels.iter().filter(|&&c| c < CUT_OFF).for_each(|&c| seen[c as usize] = true);
     let mut open: Vec<u32> = border.segments.iter().map(|s| border.component[s.facet as usize]).collect();
     open.sort_unstable();
     open.dedup();

@@ -136,6 +136,17 @@ impl Plan {
         !self.left_out.is_empty() && matches!(lid, Err(NotLidded::Sheet))
     }
 
+    /// The rims that have no lid, where all others have one and where that is for their shape alone: nothing is doubtful but what is near them. Nothing else.
+    pub fn bare(&self) -> Vec<&Rim> {
+        let of_shape = |why: &NotLidded| {
+            matches!(why, NotLidded::NoHole | NotLidded::Meets | NotLidded::Folded | NotLidded::NoArea)
+        };
+        if !self.left_out.is_empty() || !self.lids.iter().all(|lid| lid.as_ref().err().is_none_or(of_shape)) {
+            return Vec::new();
+        }
+        self.rims.iter().zip(&self.lids).filter(|(_, lid)| lid.is_err()).map(|(rim, _)| rim).collect()
+    }
+
     /// A note on the sheets that are left out.
     pub fn warning(&self) -> Option<Warning> {
         let triangles = self.left_out.iter().filter(|out| **out).count();

@@ -1,5 +1,6 @@
 //! A vote is an exact point-in-solid test, and the bricks that are stored hold the whole surface.
 
+mod beyond;
 mod lids;
 
 use crate::common::{shapes, stages};

@@ -1,0 +1,103 @@
+//! Holes without a lid, closed from voxels of a lattice around them alone, so that nothing else is looked at.
+
+use glam::DVec3;
+
+use super::apart::{Standing, touch};
+use super::holes::Plan;
+use super::rebuild::{Ground, Job, joined};
+use super::stages::Stages;
+use super::{BooleanError, Draft, Method, TriangleSource, sizing};
+use crate::fill::Rim;
+use crate::lattice::Lattice;
+use crate::mesh::{Bounds, ValidateOptions, validate};
+use crate::survey::Soup;
+use crate::vote::VoteRule;
+
+/// The lattice reaches so many voxels beyond the rims, and this part of the diagonal of their box.
+const AROUND: (f64, f64) = (10.0, 0.25);
+/// Voxels across the smallest rim, at least, while the lattice has no more than so many along a side.
+const ACROSS: f64 = 24.0;
+const MOST_ALONG: f64 = 256.0;
+/// A lattice of more than this part of the box of all is none around holes.
+const MOST: f64 = 0.25;
+/// What is made keeps so many voxels away from the border, along which the contour is closed.
+const CLEAR: f64 = 3.0;
+
+impl Job<'_> {
+    /// The holes of the one operand closed by the lids of a plan, and those that have none from voxels around them. `None` where there is no such hole, where not all of the
+    /// surface beyond the lattice stays as it is, or where that makes no solid.
+    pub(super) fn within_window(
+        &self,
+        rest: &Soup,
+        plan: &Plan,
+        standing: &Standing,
+        stages: &mut Stages<'_>,
+    ) -> Result<Option<Draft>, BooleanError> {
+        let keeps = self.options.fit.is_some_and(|fit| !fit.rebuild);
+        if !keeps || self.options.method != Method::Auto || self.options.vote != VoteRule::Winding {
+            return Ok(None);
+        }
+        let soup = plan.over(rest);
+        let Some(whole) = soup.mesh.bounds() else { return Ok(None) };
+        let Some(lattice) = window(&soup, &plan.bare(), &whole, self.h) else { return Ok(None) };
+        let [min, max] = [DVec3::splat(CLEAR), (lattice.dims - 1).as_dvec3() - CLEAR].map(|p| lattice.to_model(p));
+        let ground = Ground { lattice, finest: sizing::finest(&whole), window: Some(Bounds { min, max }) };
+        let made = match self.on(&ground, soup.clone().into_owned(), stages) {
+            Ok(made) => made,
+            Err(BooleanError::Stopped(stopped)) => return Err(stopped.into()),
+            // Whatever there is to say of it is said of the whole.
+            Err(_) => return Ok(None),
+        };
+        if !stays_beyond(&made, &soup, &lattice) || touch(&made.mesh, &standing.mesh, self.progress)? {
+            return Ok(None);
+        }
+        let check = ValidateOptions { self_intersections: true, weld: true };
+        let is_valid = validate(&made.mesh, &check, self.progress)?.is_valid();
+        Ok(is_valid.then(|| joined(standing.clone(), made)))
+    }
+}
+
+/// A lattice around rims of a soup, of voxels of size `h` or finer; `None` where there are none, or where it would hold much of the soup.
+fn window(soup: &Soup, rims: &[&Rim], whole: &Bounds, h: f64) -> Option<Lattice> {
+    let at = |v: &u32| soup.mesh.positions[*v as usize];
+    let box_of_rims = Bounds::of(rims.iter().flat_map(|rim| &rim.vertices).map(at))?;
+    let around = |h: f64| {
+        let reach = DVec3::splat(AROUND.0 * h + AROUND.1 * box_of_rims.diagonal());
+        let room = DVec3::splat((CLEAR + 2.0) * h);
+        Bounds {
+            min: (box_of_rims.min - reach).max(whole.min - room),
+            max: (box_of_rims.max + reach).min(whole.max + room),
+        }
+    };
+    let smallest = rims.iter().map(|rim| rim.diameter).fold(f64::INFINITY, f64::min);
+    let wanted = h.min(smallest / ACROSS).max(sizing::finest(whole));
+    let is_small = |h: f64| around(h).size().max_element() <= MOST_ALONG * h;
+    let h = if is_small(wanted) { wanted } else { h };
+    let window = around(h);
+    let volume = |min: DVec3, max: DVec3| (max - min).max(DVec3::splat(h)).element_product();
+    let held = volume(window.min.max(whole.min), window.max.min(whole.max));
+    (held <= MOST * volume(whole.min, whole.max)).then(|| Lattice::around(&window, h))
+}
+
+/// Whether all triangles of a soup that reach beyond a lattice are triangles of what was made, once each, and what voxels made keeps away from its border.
+fn stays_beyond(made: &Draft, soup: &Soup, lattice: &Lattice) -> bool {
+    let last = (lattice.dims - 1).as_dvec3();
+    let reaches_out = |corners: [DVec3; 3]| {
+        corners.into_iter().map(|p| lattice.to_lattice(p)).any(|p| p.min(last - p).min_element() < CLEAR)
+    };
+    let mut times = vec![0u32; soup.source.len()];
+    let mut lids = 0;
+    for (_, source) in made.sources.iter().enumerate().filter(|(t, _)| reaches_out(made.mesh.corners(*t))) {
+        match *source {
+            TriangleSource::Operand { triangle, .. } => {
+                let Ok(n) = soup.source.binary_search(&triangle) else { return false };
+                times[n] += 1;
+            }
+            TriangleSource::Lid { .. } => lids += 1,
+            TriangleSource::Closed => return false,
+        }
+    }
+    let beyond = |t: &usize| reaches_out(soup.mesh.corners(*t));
+    let lids_beyond = (soup.source.len()..soup.mesh.triangles.len()).filter(beyond).count();
+    lids == lids_beyond && (0..times.len()).all(|t| times[t] == u32::from(beyond(&t)))
+}
