@@ -1,7 +1,9 @@
 //! Writing: to a file or a stream, verified before it appears under its name.
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{Read, Write};
 use std::path::Path;
+use std::sync::mpsc::{SyncSender, sync_channel};
 
 use sha2::{Digest, Sha256};
 
@@ -73,11 +75,24 @@ fn write_file<T>(
     encode(target, mesh, paint, &mut buffer)?;
     buffer.flush().map_err(|e| failed(&e))?;
     drop(buffer);
-    file.sync_all().map_err(|e| failed(&e))?;
     session.progress.stage(Stage::Verify)?;
-    let bytes = std::fs::read(path).map_err(|e| failed(&e))?;
-    let verdict = judge(&read_back(&bytes, target)?)?;
-    Ok((entry(target, &bytes), verdict))
+    synced(&file, &target.path, || {
+        let bytes = std::fs::read(path).map_err(|e| failed(&e))?;
+        let verdict = judge(&read_back(&bytes, target)?)?;
+        Ok((entry(target, &bytes), verdict))
+    })
+}
+
+/// What `look` finds in a file, while the system puts it on the disk.
+fn synced<T>(file: &File, path: &Path, look: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    std::thread::scope(|scope| {
+        let sync = scope.spawn(|| file.sync_all());
+        let found = look()?;
+        match sync.join() {
+            Ok(synced) => synced.map_err(|e| unwritable(path, &e)).map(|()| found),
+            Err(_) => Err(Failure::internal("the file could not be put on the disk")),
+        }
+    })
 }
 
 /// Writes what `encode` makes, in `format`. A regular file is read back and compared by its hash before it appears.
@@ -89,13 +104,12 @@ pub fn write_grid(
 ) -> Result<OutputEntry, Failure> {
     let mut bytes = 0;
     let mut hashed = |out: &mut dyn Write| -> Result<String, Failure> {
-        let mut hashing = Hashing { out, hash: Sha256::new(), bytes: 0, session };
-        let written = io::encode_grid(samples, format, &mut hashing).and_then(|()| hashing.flush());
+        let written = hash_of(out, session, |out| io::encode_grid(samples, format, out));
         // A run that was stopped shows as a failure to write; what stopped it comes first.
         session.progress.check()?;
-        written.map_err(|e| unwritable(path, &e))?;
-        bytes = hashing.bytes;
-        Ok(hex(&hashing.hash.finalize()))
+        let (sha256, count) = written.map_err(|e| unwritable(path, &e))?;
+        bytes = count;
+        Ok(sha256)
     };
     let sha256 = if is_stream(path) {
         hashed(&mut std::io::stdout().lock())?
@@ -106,11 +120,13 @@ pub fn write_grid(
         let failed = |e: &std::io::Error| unwritable(path, e);
         let draft = session.draft(path)?;
         let sha256 = hashed(&mut std::io::BufWriter::with_capacity(1 << 20, &draft.file))?;
-        draft.file.sync_all().map_err(|e| failed(&e))?;
         session.progress.stage(Stage::Verify)?;
-        let found = sha256_of_file(&draft.path, session);
-        session.progress.check()?;
-        if found.map_err(|e| failed(&e))? != sha256 {
+        let found = synced(&draft.file, path, || {
+            let found = sha256_of_file(&draft.path, session);
+            session.progress.check()?;
+            found.map_err(|e| failed(&e))
+        });
+        if found? != sha256 {
             return Err(Failure::internal("the file does not hold what was written to it; it was removed"));
         }
         sha256
@@ -120,19 +136,44 @@ pub fn write_grid(
     Ok(OutputEntry { path, format: format.to_string(), bytes, sha256, unit, validity: None })
 }
 
-/// Counts and hashes what goes through it, and stops when the run is to stop.
-struct Hashing<'a> {
+/// Lets `write` write to `out`. Returns the hash of what went through, made on a thread of its own, and its bytes.
+fn hash_of(
+    out: &mut dyn Write,
+    session: &Session,
+    write: impl FnOnce(&mut dyn Write) -> std::io::Result<()>,
+) -> std::io::Result<(String, u64)> {
+    std::thread::scope(|scope| {
+        let (pieces, received) = sync_channel::<Vec<u8>>(PIECES);
+        let hash = scope.spawn(move || {
+            let mut hash = Sha256::new();
+            received.iter().for_each(|piece| hash.update(piece));
+            hex(&hash.finalize())
+        });
+        let mut passing = Passing { out, pieces, bytes: 0, session };
+        write(&mut passing).and_then(|()| passing.flush())?;
+        let bytes = passing.bytes;
+        drop(passing);
+        let hash = hash.join().map_err(|_| std::io::Error::other("no hash could be made"))?;
+        Ok((hash, bytes))
+    })
+}
+
+/// So many pieces wait to be hashed, at most.
+const PIECES: usize = 4;
+
+/// Counts what goes through it, passes it on to be hashed, and stops when the run is to stop.
+struct Passing<'a> {
     out: &'a mut dyn Write,
-    hash: Sha256,
+    pieces: SyncSender<Vec<u8>>,
     bytes: u64,
     session: &'a Session,
 }
 
-impl Write for Hashing<'_> {
+impl Write for Passing<'_> {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         self.session.progress.check().map_err(std::io::Error::other)?;
         let written = self.out.write(bytes)?;
-        self.hash.update(&bytes[..written]);
+        self.pieces.send(bytes[..written].to_vec()).map_err(std::io::Error::other)?;
         self.bytes += written as u64;
         Ok(written)
     }
@@ -143,9 +184,17 @@ impl Write for Hashing<'_> {
 }
 
 fn sha256_of_file(path: &Path, session: &Session) -> std::io::Result<String> {
-    let mut hashing = Hashing { out: &mut std::io::sink(), hash: Sha256::new(), bytes: 0, session };
-    std::io::copy(&mut std::fs::File::open(path)?, &mut hashing)?;
-    Ok(hex(&hashing.hash.finalize()))
+    let mut file = std::fs::File::open(path)?;
+    let read = |out: &mut dyn Write| {
+        let mut piece = vec![0; 1 << 20];
+        loop {
+            match file.read(&mut piece)? {
+                0 => return Ok(()),
+                count => out.write_all(&piece[..count])?,
+            }
+        }
+    };
+    hash_of(&mut std::io::sink(), session, read).map(|(sha256, _)| sha256)
 }
 
 /// What it means that a mesh could not be encoded.

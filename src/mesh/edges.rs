@@ -1,5 +1,7 @@
 //! The edges of a soup and what hangs together over them.
 
+use rayon::prelude::*;
+
 use super::weld::has_repeated_index;
 
 /// Items sorted by a small key, without a comparison sort: offsets and items.
@@ -9,24 +11,40 @@ pub(crate) struct Buckets {
 }
 
 impl Buckets {
-    /// Sorts `items` (key below `keys`, payload) by key, then payload.
-    pub(crate) fn new(keys: usize, items: impl Iterator<Item = (u32, u64)> + Clone) -> Self {
+    /// Sorts `items` (key below `keys`, payload) by key, then payload. Each thread goes through all of them for a range of keys of its own.
+    pub(crate) fn new(keys: usize, items: impl Iterator<Item = (u32, u64)> + Clone + Sync) -> Self {
+        let parts = if keys < FEW { 1 } else { rayon::current_num_threads().clamp(1, MOST_PARTS) };
+        let each = keys.div_ceil(parts).max(1);
         let mut start = vec![0u32; keys + 1];
-        for (key, _) in items.clone() {
-            start[key as usize + 1] += 1;
-        }
+        start[1..].par_chunks_mut(each).enumerate().for_each(|(part, counts)| {
+            let first = part * each;
+            for (key, _) in items.clone() {
+                if let Some(count) = counts.get_mut((key as usize).wrapping_sub(first)) {
+                    *count += 1;
+                }
+            }
+        });
         for k in 0..keys {
             start[k + 1] += start[k];
         }
         let mut sorted = vec![0u64; start[keys] as usize];
-        // The starts move to the ends while filling and are moved back after.
-        for (key, payload) in items {
-            let at = &mut start[key as usize];
-            sorted[*at as usize] = payload;
-            *at += 1;
+        let mut parts: Vec<(usize, Vec<u32>, &mut [u64])> = Vec::new();
+        let mut rest = sorted.as_mut_slice();
+        for first in (0..keys).step_by(each) {
+            let end = (first + each).min(keys);
+            let (mine, others) = rest.split_at_mut((start[end] - start[first]) as usize);
+            parts.push((first, start[first..end].to_vec(), mine));
+            rest = others;
         }
-        start.copy_within(0..keys, 1);
-        start[0] = 0;
+        parts.into_par_iter().for_each(|(first, mut next, mine)| {
+            let base = start[first];
+            for (key, payload) in items.clone() {
+                if let Some(at) = next.get_mut((key as usize).wrapping_sub(first)) {
+                    mine[(*at - base) as usize] = payload;
+                    *at += 1;
+                }
+            }
+        });
         sort_each(&start, &mut sorted);
         Self { start, items: sorted }
     }
@@ -41,6 +59,12 @@ impl Buckets {
         self.start.len() - 1
     }
 }
+
+/// Fewer keys than this are sorted by one thread.
+const FEW: usize = 1 << 14;
+
+/// More threads gain nothing where each goes through all items.
+const MOST_PARTS: usize = 16;
 
 /// So many buckets are sorted at once.
 const AT_ONCE: usize = 1 << 14;
@@ -204,20 +228,18 @@ pub(crate) fn copies(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 2]> {
     };
     let items = triangles.iter().enumerate().filter(|(_, t)| !has_repeated_index(**t));
     let buckets = Buckets::new(vertices, items.map(|(id, t)| (t[0].min(t[1]).min(t[2]), id as u64)));
-    let mut found = Vec::new();
-    let mut group: Vec<([u32; 3], u32)> = Vec::new();
-    for key in 0..buckets.keys() {
+    let of_key = |key: usize| {
         let ids = buckets.get(key);
-        if ids.len() < 2 {
-            continue;
+        let mut group: Vec<([u32; 3], u32)> = Vec::new();
+        if ids.len() > 1 {
+            group.extend(ids.iter().map(|&id| (sorted(id), id as u32)));
+            group.sort_unstable();
         }
-        group.clear();
-        group.extend(ids.iter().map(|&id| (sorted(id), id as u32)));
-        group.sort_unstable();
-        for same in group.chunk_by(|a, b| a.0 == b.0) {
-            found.extend(same[1..].iter().map(|copy| [copy.1, same[0].1]));
-        }
-    }
+        let same = group.chunk_by(|a, b| a.0 == b.0);
+        same.flat_map(|same| same[1..].iter().map(|copy| [copy.1, same[0].1])).collect::<Vec<_>>()
+    };
+    let mut found: Vec<[u32; 2]> =
+        (0..buckets.keys()).into_par_iter().with_min_len(1 << 10).flat_map_iter(of_key).collect();
     found.sort_unstable();
     found
 }

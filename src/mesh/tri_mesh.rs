@@ -1,6 +1,9 @@
 //! The soup: triangles as read, nothing assumed.
 
 use glam::DVec3;
+use rayon::prelude::*;
+
+use super::weld::first_of_equal;
 
 /// An axis-aligned box, in the space of the points it was made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -124,7 +127,8 @@ impl TriMesh {
 
     /// The box around the vertices that triangles use; `None` without triangles.
     pub fn bounds(&self) -> Option<Bounds> {
-        Bounds::of(self.triangles.iter().flatten().map(|&v| self.positions[v as usize]))
+        let of = |triangles: &[[u32; 3]]| Bounds::of(triangles.iter().flatten().map(|&v| self.positions[v as usize]));
+        self.triangles.par_chunks(1 << 16).filter_map(of).reduce_with(|a, b| a.union(&b))
     }
 
     /// Adds the triangles of `other` after its own; vertices are not merged.
@@ -137,14 +141,16 @@ impl TriMesh {
     /// The same surface with vertices of equal coordinates merged (−0 equals 0) and unused ones
     /// dropped; triangles keep their order and number. Vertices are numbered by first use.
     pub fn welded(&self) -> Self {
-        let mut ids = rustc_hash::FxHashMap::default();
-        let mut positions = Vec::new();
+        const NONE: u32 = u32::MAX;
+        let first = first_of_equal(&self.positions);
+        let (mut numbers, mut positions) = (vec![NONE; first.len()], Vec::new());
         let mut weld = |v: u32| {
-            let p = self.positions[v as usize];
-            *ids.entry((p + 0.0).to_array().map(f64::to_bits)).or_insert_with(|| {
-                positions.push(p);
-                positions.len() as u32 - 1
-            })
+            let number = &mut numbers[first[v as usize] as usize];
+            if *number == NONE {
+                *number = positions.len() as u32;
+                positions.push(self.positions[v as usize]);
+            }
+            *number
         };
         let triangles = self.triangles.iter().map(|t| t.map(&mut weld)).collect();
         Self { positions, triangles }

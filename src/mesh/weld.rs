@@ -1,20 +1,65 @@
 //! Vertices of equal coordinates as one.
 
+use std::hash::{BuildHasher, Hash};
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use glam::DVec3;
-use rustc_hash::FxHashMap;
+use rayon::prelude::*;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use super::TriMesh;
 
+/// Items whose keys have the same hash in some bits are looked at together: so many kinds of bits there are.
+const SHARDS: usize = 1 << 10;
+
+/// Of so many items the bits are sorted at once.
+const CHUNK: usize = 1 << 18;
+
+/// For each of `count` items the first one with an equal key, which all threads look for: items are sorted by some bits of their keys' hash, so that
+/// each part has its own small table. The result depends on the keys alone.
+pub(crate) fn first_of_equal_keys<K: Copy + Eq + Hash>(count: usize, key: impl Fn(usize) -> K + Sync) -> Vec<u32> {
+    if count < CHUNK {
+        let mut first = FxHashMap::with_capacity_and_hasher(count, FxBuildHasher);
+        return (0..count).map(|n| *first.entry(key(n)).or_insert(n as u32)).collect();
+    }
+    // The table takes its own bits from either end of the same hash.
+    let shard = |n: usize| (FxBuildHasher.hash_one(key(n)) >> 20) as usize % SHARDS;
+    let chunks: Vec<(Vec<u32>, Vec<u32>)> = (0..count.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(|chunk| {
+            let range = CHUNK * chunk..(CHUNK * (chunk + 1)).min(count);
+            let shards: Vec<u16> = range.clone().map(|n| shard(n) as u16).collect();
+            let mut starts = vec![0u32; SHARDS + 1];
+            shards.iter().for_each(|&s| starts[s as usize + 1] += 1);
+            (0..SHARDS).for_each(|s| starts[s + 1] += starts[s]);
+            let (mut at, mut sorted) = (starts.clone(), vec![0u32; range.len()]);
+            for (n, &s) in range.zip(&shards) {
+                sorted[at[s as usize] as usize] = n as u32;
+                at[s as usize] += 1;
+            }
+            (starts, sorted)
+        })
+        .collect();
+    let first: Vec<AtomicU32> = (0..count).into_par_iter().map(|_| AtomicU32::new(0)).collect();
+    (0..SHARDS).into_par_iter().for_each(|s| {
+        let members = || chunks.iter().flat_map(|(starts, sorted)| &sorted[starts[s] as usize..starts[s + 1] as usize]);
+        let mut known = FxHashMap::default();
+        for &n in members() {
+            first[n as usize].store(*known.entry(key(n as usize)).or_insert(n), Ordering::Relaxed);
+        }
+    });
+    first.into_iter().map(AtomicU32::into_inner).collect()
+}
+
 /// For each vertex the first one with exactly equal coordinates (−0 equals 0).
 pub(crate) fn first_of_equal(positions: &[DVec3]) -> Vec<u32> {
-    let mut first = FxHashMap::with_capacity_and_hasher(positions.len(), Default::default());
-    (0u32..).zip(positions).map(|(v, p)| *first.entry((*p + 0.0).to_array().map(f64::to_bits)).or_insert(v)).collect()
+    first_of_equal_keys(positions.len(), |v| (positions[v] + 0.0).to_array().map(f64::to_bits))
 }
 
 /// The triangles of `mesh` with each vertex replaced by the first one with equal coordinates.
 pub(crate) fn welded_triangles(mesh: &TriMesh) -> Vec<[u32; 3]> {
     let first = first_of_equal(&mesh.positions);
-    mesh.triangles.iter().map(|t| t.map(|v| first[v as usize])).collect()
+    mesh.triangles.par_iter().map(|t| t.map(|v| first[v as usize])).collect()
 }
 
 /// Whether a triangle names a vertex twice.
@@ -29,4 +74,20 @@ pub(crate) fn canonical(t: [u32; 3]) -> ([u32; 3], bool) {
     s.sort_unstable();
     let even = [[0, 1, 2], [1, 2, 0], [2, 0, 1]].iter().any(|p| [t[p[0]], t[p[1]], t[p[2]]] == s);
     (s, even)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_of_equal_keys_is_found_in_many_as_in_few() {
+        // Every seventh and some far ones repeat.
+        let key = |n: usize| (n % 7 * 1000 + n / 50, n % 3 == 0);
+        for count in [0, 1, 1000, CHUNK - 1, CHUNK, 3 * CHUNK + 5] {
+            let mut known = std::collections::BTreeMap::new();
+            let expected: Vec<u32> = (0..count).map(|n| *known.entry(key(n)).or_insert(n as u32)).collect();
+            assert!(first_of_equal_keys(count, key) == expected, "{count}");
+        }
+    }
 }

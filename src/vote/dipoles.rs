@@ -47,6 +47,10 @@ struct Node {
     children: u32,
 }
 
+impl Node {
+    const NONE: Self = Self { centre: DVec3::ZERO, dipole: DVec3::ZERO, near: 0.0, first: 0, count: 0, children: 0 };
+}
+
 /// The winding number of one operand at any point, by a tree over its triangles: groups of triangles far from the point
 /// count as one dipole.
 #[derive(Debug, Clone)]
@@ -94,28 +98,8 @@ impl WindingTree {
         let mut faces = Vec::with_capacity(range.len());
         let mut spare = MOST_PIECES;
         range.for_each(|t| cut(mesh.corners(t), longest, &mut spare, &mut faces));
-        let mut tree = Self { nodes: Vec::new(), faces };
-        tree.nodes.push(node(&tree.faces, 0));
-        let mut stack = vec![0];
-        while let Some(at) = stack.pop() {
-            let (first, count) = (tree.nodes[at].first as usize, tree.nodes[at].count as usize);
-            if count <= LEAF {
-                continue;
-            }
-            if count >= CHECK_FROM {
-                progress.check()?;
-            }
-            let mine = &mut tree.faces[first..first + count];
-            let axis = longest_axis(mine);
-            let middle = count / 2;
-            mine.select_nth_unstable_by(middle, |a, b| a.centre[axis].total_cmp(&b.centre[axis]));
-            let children = tree.nodes.len();
-            tree.nodes[at].children = children as u32;
-            let (low, high) = mine.split_at(middle);
-            tree.nodes.extend([node(low, first), node(high, first + middle)]);
-            stack.extend([children, children + 1]);
-        }
-        Ok(tree)
+        let nodes = branch(&mut faces, 0, progress)?.flattened();
+        Ok(Self { nodes, faces })
     }
 
     /// The triangles of a node.
@@ -191,6 +175,83 @@ impl WindingTree {
 pub(super) fn complete(above: f64, rough: f64) -> f64 {
     let w = above + 0.5;
     w + (rough - w).round()
+}
+
+/// Part of a tree in the making.
+enum Branch {
+    /// All of it: the root first, children by their place in the list.
+    Whole(Vec<Node>),
+    /// A node and what is under it.
+    Fork(Node, Box<[Self; 2]>),
+}
+
+/// The tree over `faces`, which are sorted for it; they begin at number `first` of all. Parts of many are made side by side.
+fn branch(faces: &mut [Face], first: usize, progress: &Progress) -> Result<Branch, Stopped> {
+    if faces.len() < CHECK_FROM {
+        return Ok(Branch::Whole(subtree(faces, first)));
+    }
+    progress.check()?;
+    let root = node(faces, first);
+    let (low, high) = halved(faces);
+    let middle = first + low.len();
+    let (low, high) = rayon::join(|| branch(low, first, progress), || branch(high, middle, progress));
+    Ok(Branch::Fork(root, Box::new([low?, high?])))
+}
+
+/// The same of few.
+fn subtree(faces: &mut [Face], first: usize) -> Vec<Node> {
+    let mut nodes = vec![node(faces, first)];
+    let mut stack = vec![0];
+    while let Some(at) = stack.pop() {
+        let (start, count) = (nodes[at].first as usize - first, nodes[at].count as usize);
+        if count <= LEAF {
+            continue;
+        }
+        let (low, high) = halved(&mut faces[start..start + count]);
+        let children = nodes.len();
+        nodes[at].children = children as u32;
+        nodes.extend([node(low, first + start), node(high, first + start + low.len())]);
+        stack.extend([children, children + 1]);
+    }
+    nodes
+}
+
+/// Faces in two halves along their longest axis.
+fn halved(faces: &mut [Face]) -> (&mut [Face], &mut [Face]) {
+    let axis = longest_axis(faces);
+    let middle = faces.len() / 2;
+    faces.select_nth_unstable_by(middle, |a, b| a.centre[axis].total_cmp(&b.centre[axis]));
+    faces.split_at_mut(middle)
+}
+
+impl Branch {
+    /// All nodes, the root first.
+    fn flattened(self) -> Vec<Node> {
+        let mut nodes = vec![Node::NONE];
+        self.put(&mut nodes, 0);
+        nodes
+    }
+
+    /// Puts the root at a place of the list, and all others at its end.
+    fn put(self, nodes: &mut Vec<Node>, at: usize) {
+        match self {
+            Self::Whole(own) => {
+                // What was at place 1 comes next.
+                let shift = nodes.len() as u32 - 1;
+                let moved =
+                    |node: Node| Node { children: if node.children == 0 { 0 } else { node.children + shift }, ..node };
+                let mut own = own.into_iter().map(moved);
+                nodes[at] = own.next().unwrap_or(Node::NONE);
+                nodes.extend(own);
+            }
+            Self::Fork(node, children) => {
+                let place = nodes.len();
+                nodes[at] = Node { children: place as u32, ..node };
+                nodes.extend([Node::NONE; 2]);
+                children.into_iter().zip(place..).for_each(|(child, at)| child.put(nodes, at));
+            }
+        }
+    }
 }
 
 fn longest_axis(faces: &[Face]) -> usize {

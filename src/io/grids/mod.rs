@@ -14,6 +14,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use glam::{DVec3, IVec3};
+use rayon::prelude::*;
 
 pub use file::{
     BLOCK_SIDE, BLOCK_VOXELS, BlockValues, GridBlock, GridFile, GridMeasures, GridTile, GridValues, SparseValues,
@@ -113,15 +114,22 @@ pub fn write_grid_as(
     save_bytes(path, |out| encode_grid(samples, format, out))
 }
 
-/// All values, plane by plane.
+/// About so many values are made at once.
+const AT_ONCE: usize = 1 << 20;
+
+/// All values, plane by plane; several planes are made at once, on all threads.
 fn write_values(samples: &DistanceSamples<'_>, out: &mut dyn Write) -> io::Result<()> {
     let points = samples.dims[0] * samples.dims[1];
-    let (mut values, mut bytes) = (Vec::with_capacity(points), Vec::with_capacity(4 * points));
-    for z in 0..samples.dims[2] {
+    let at_once = (AT_ONCE / points.max(1)).clamp(1, 64);
+    let made = |z: usize| {
+        let mut values = Vec::with_capacity(points);
         read_plane(samples, z, &mut values)?;
-        bytes.clear();
-        bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
-        out.write_all(&bytes)?;
+        Ok(values.iter().flat_map(|value| value.to_le_bytes()).collect())
+    };
+    for first in (0..samples.dims[2]).step_by(at_once) {
+        let planes = (first..(first + at_once).min(samples.dims[2])).into_par_iter().map(made);
+        let planes: Vec<Vec<u8>> = planes.collect::<io::Result<_>>()?;
+        planes.iter().try_for_each(|bytes| out.write_all(bytes))?;
     }
     Ok(())
 }

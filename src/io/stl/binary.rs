@@ -2,14 +2,15 @@
 
 use std::io::Write;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use super::super::error::{FileError, FileProblem, WriteError, WriteProblem};
-use super::super::soup::{Soup, Welder};
+use super::super::soup::{Soup, too_many_vertices};
 use super::super::text::counted;
 use super::normal;
 use crate::io::Format;
 use crate::mesh::TriMesh;
+use crate::mesh::weld::first_of_equal_keys;
 
 const HEADER: usize = 80;
 /// Header and count.
@@ -71,27 +72,36 @@ fn facets_to_read(bytes: &[u8], soup: &mut Soup) -> Result<usize, FileError> {
 pub(super) fn read(bytes: &[u8]) -> Result<Soup, FileError> {
     let mut soup = Soup::new();
     let facets = facets_to_read(bytes, &mut soup)?;
-    let mut welder = Welder::for_triangles(facets);
-    soup.triangles.reserve_exact(facets);
-    for facet in bytes[PREFIX..].chunks_exact(FACET).take(facets) {
-        let mut corners = [0; 3];
-        // The normal, 12 bytes, is recomputed by whoever needs it.
-        for (k, corner) in corners.iter_mut().enumerate() {
-            let place = 12 + 12 * k;
-            let p = point(&facet[place..place + 12]);
-            *corner = welder.vertex(p, &mut soup.positions)?;
-        }
-        soup.triangles.push(corners);
+    let facets = &bytes[PREFIX..PREFIX + FACET * facets];
+    let count = facets.len() / FACET * 3;
+    if count > u32::MAX as usize {
+        return Err(too_many_vertices());
     }
+    // The normal, 12 bytes, is recomputed by whoever needs it.
+    let corner = |n: usize| point(&facets[FACET * (n / 3) + 12 + 12 * (n % 3)..][..12]);
+    // Adding zero turns −0 into 0.
+    let mut numbers = first_of_equal_keys(count, |n| (corner(n) + 0.0).to_array().map(f32::to_bits));
+    for n in 0..count {
+        // The first of equal ones comes first, so that it has its number already.
+        let first = numbers[n] as usize;
+        numbers[n] = match first == n {
+            true => {
+                soup.positions.push(corner(n).as_dvec3());
+                soup.positions.len() as u32 - 1
+            }
+            false => numbers[first],
+        };
+    }
+    soup.triangles = numbers.as_chunks::<3>().0.to_vec();
     Ok(soup)
 }
 
-fn point(bytes: &[u8]) -> DVec3 {
+fn point(bytes: &[u8]) -> Vec3 {
     let mut p = Vec3::ZERO;
     for (k, field) in bytes.chunks_exact(4).take(3).enumerate() {
         p[k] = f32::from_le_bytes([field[0], field[1], field[2], field[3]]);
     }
-    p.as_dvec3()
+    p
 }
 
 /// Writes the facets with recomputed normals.

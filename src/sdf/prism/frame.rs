@@ -42,6 +42,14 @@ impl TriangleFrame {
         }
     }
 
+    /// How far a point, lattice coordinates, is from the triangle at least, h: from the ball around its longest side that holds it.
+    pub(super) fn at_least(&self, point: Vec3) -> f32 {
+        let [a, h, b] = self.sizes;
+        let middle = (a - b) / 2.0;
+        let radius = ((a + b) / 2.0).max(middle.hypot(h));
+        (point - self.base.as_vec3() - self.origin - self.axes[0] * middle).length() - radius
+    }
+
     /// The signed distance of `voxel`, h. The paper takes the side of the triangle's plane for the sign; here it is that of the
     /// pseudonormal at the nearest point, which holds beyond the half-angle planes, too.
     pub fn signed(&self, voxel: IVec3) -> f32 {

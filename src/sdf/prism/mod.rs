@@ -10,7 +10,7 @@ mod frustum;
 mod surface;
 mod table;
 
-use glam::{DVec2, IVec3};
+use glam::{DVec2, IVec3, Vec3};
 use rayon::prelude::*;
 
 pub use frame::TriangleFrame;
@@ -76,8 +76,10 @@ pub fn prism(
     slabs.finish(mesh, lattice, progress)
 }
 
-/// Draws the sections `active` of slice `z`: at each voxel the distance that is smallest in absolute value.
+/// Draws the sections `active` of slice `z`: at each voxel the distance that is smallest in absolute value. Prisms overlap, those around a whole band
+/// above all: tiles of 4² voxels in which nothing would change are left out.
 fn draw(prisms: &Prisms, table: &Table, active: &[u32], z: i32, end: IVec3, values: &mut [f32]) {
+    let mut plane = Plane::new(values, end, z);
     for &n in active {
         let section = &table.sections()[n as usize];
         let frustum = &prisms.frusta[section.frustum as usize];
@@ -85,16 +87,79 @@ fn draw(prisms: &Prisms, table: &Table, active: &[u32], z: i32, end: IVec3, valu
         let corners = section.corners(frustum, z);
         let low = corners.iter().fold(f64::INFINITY, |low, p| low.min(p.y)).ceil().max(0.0) as i32;
         let high = corners.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p.y)).floor();
-        for y in low..=(high as i32).min(end.y - 1) {
-            let [from, to] = row(&corners, f64::from(y));
-            for x in (from.ceil().max(0.0) as i32)..=(to.floor().min(f64::from(end.x - 1)) as i32) {
-                let signed = frame.signed(IVec3::new(x, y, z));
-                let best = &mut values[(y * end.x + x) as usize];
+        let high = (high as i32).min(end.y - 1);
+        for row_of_tiles in low / TILE..=high.div_euclid(TILE) {
+            let first = row_of_tiles * TILE;
+            let spans = std::array::from_fn(|k| {
+                let y = first + k as i32;
+                if y < low || y > high {
+                    return [0, -1];
+                }
+                let [from, to] = row(&corners, f64::from(y));
+                [from.ceil().max(0.0) as i32, to.floor().min(f64::from(end.x - 1)) as i32]
+            });
+            plane.draw_row(row_of_tiles, &spans, frame);
+        }
+    }
+}
+
+/// Voxels along a side of a tile. With 8, fandisk at 512 with a tenth of its size as the band takes 11 s.
+const TILE: i32 = 4;
+
+/// How far the corners of a tile are from its middle, and a little for rounding, h.
+const TILE_RADIUS: f32 = 2.13;
+
+/// One slice of a slab, in tiles.
+struct Plane<'a> {
+    values: &'a mut [f32],
+    end: IVec3,
+    z: i32,
+    /// For each tile the largest distance in it, or more.
+    most: Vec<f32>,
+}
+
+impl<'a> Plane<'a> {
+    fn new(values: &'a mut [f32], end: IVec3, z: i32) -> Self {
+        Self { values, end, z, most: vec![f32::INFINITY; ((end.x / TILE) * (end.y / TILE)) as usize] }
+    }
+
+    /// Draws a triangle in a row of tiles; `spans`: the first and the last voxel of each row of voxels.
+    fn draw_row(&mut self, row: i32, spans: &[[i32; 2]; TILE as usize], frame: &TriangleFrame) {
+        let any = || spans.iter().filter(|[from, to]| from <= to);
+        let (Some(first), Some(last)) = (any().map(|s| s[0]).min(), any().map(|s| s[1]).max()) else { return };
+        for column in first / TILE..=last / TILE {
+            let tile = (row * (self.end.x / TILE) + column) as usize;
+            let middle = IVec3::new(column, row, 0).as_vec3() * TILE as f32 + Vec3::new(1.5, 1.5, self.z as f32);
+            if frame.at_least(middle) - TILE_RADIUS > self.most[tile] {
+                continue;
+            }
+            if self.draw_tile([column, row], spans, frame) {
+                self.most[tile] = self.farthest([column, row]);
+            }
+        }
+    }
+
+    /// Draws a triangle in one tile, and says whether that changed anything.
+    fn draw_tile(&mut self, [column, row]: [i32; 2], spans: &[[i32; 2]; TILE as usize], frame: &TriangleFrame) -> bool {
+        let mut changed = false;
+        for (y, &[from, to]) in (row * TILE..).zip(spans) {
+            for x in from.max(column * TILE)..=to.min(column * TILE + TILE - 1) {
+                let signed = frame.signed(IVec3::new(x, y, self.z));
+                let best = &mut self.values[(y * self.end.x + x) as usize];
                 if signed.abs() < best.abs() {
                     *best = signed;
+                    changed = true;
                 }
             }
         }
+        changed
+    }
+
+    /// The largest distance in a tile.
+    fn farthest(&self, [column, row]: [i32; 2]) -> f32 {
+        let rows = (row * TILE..(row + 1) * TILE).map(|y| (y * self.end.x + column * TILE) as usize);
+        let values = rows.flat_map(|start| &self.values[start..start + TILE as usize]);
+        values.fold(0.0, |most, value| most.max(value.abs()))
     }
 }
 
