@@ -11,42 +11,59 @@ pub(crate) struct Buckets {
 }
 
 impl Buckets {
-    /// Sorts `items` (key below `keys`, payload) by key, then payload. Each thread goes through all of them for a range of keys of its own.
-    pub(crate) fn new(keys: usize, items: impl Iterator<Item = (u32, u64)> + Clone + Sync) -> Self {
-        let parts = if keys < FEW { 1 } else { rayon::current_num_threads().clamp(1, MOST_PARTS) };
-        let each = keys.div_ceil(parts).max(1);
+    /// Sorts items 0 to `count` - 1, those that `item` gives (key below `keys`, payload), by key, then payload.
+    pub(crate) fn new(keys: usize, count: usize, item: impl Fn(usize) -> Option<(u32, u64)> + Sync) -> Self {
+        if count < FEW {
+            let mut given: Vec<(u32, u64)> = (0..count).filter_map(item).collect();
+            given.sort_unstable();
+            let mut start = vec![0u32; keys + 1];
+            given.iter().for_each(|&(key, _)| start[key as usize + 1] += 1);
+            (0..keys).for_each(|k| start[k + 1] += start[k]);
+            return Self { start, items: given.into_iter().map(|(_, payload)| payload).collect() };
+        }
+        // Items are sorted by part first, so that all that follows is near in memory, and each part is for one thread.
+        let part = |n: usize| item(n).map(|(key, _)| key as usize * PARTS / keys);
+        let end_of = |part: usize| (part * keys).div_ceil(PARTS);
+        let chunks: Vec<Chunk> = (0..count.div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| Chunk::of(CHUNK * chunk..(CHUNK * (chunk + 1)).min(count), part))
+            .collect();
+        let size = |part: usize| chunks.iter().map(|chunk| chunk.of_part(part).len()).sum::<usize>();
         let mut start = vec![0u32; keys + 1];
-        start[1..].par_chunks_mut(each).enumerate().for_each(|(part, counts)| {
-            let first = part * each;
-            for (key, _) in items.clone() {
-                if let Some(count) = counts.get_mut((key as usize).wrapping_sub(first)) {
-                    *count += 1;
-                }
+        let mut items = vec![0u64; (0..PARTS).map(size).sum()];
+        let (mut starts, mut rest, mut before) = (&mut start[..keys], items.as_mut_slice(), 0);
+        let mut parts = Vec::with_capacity(PARTS);
+        for part in 0..PARTS {
+            let (own, others) = starts.split_at_mut(end_of(part + 1) - end_of(part));
+            let (mine, left) = rest.split_at_mut(size(part));
+            let first = before;
+            before += mine.len() as u32;
+            parts.push((part, own, mine, first));
+            (starts, rest) = (others, left);
+        }
+        parts.into_par_iter().for_each(|(part, starts, items, first)| {
+            let given = || chunks.iter().flat_map(|chunk| chunk.of_part(part)).filter_map(|&n| item(n as usize));
+            let at = |key: u32| key as usize - end_of(part);
+            given().for_each(|(key, _)| starts[at(key)] += 1);
+            let mut sum = 0;
+            for start in starts.iter_mut() {
+                sum += std::mem::replace(start, sum);
+            }
+            // The starts move to the ends while filling.
+            for (key, payload) in given() {
+                let place = &mut starts[at(key)];
+                items[*place as usize] = payload;
+                *place += 1;
+            }
+            let mut begin = 0;
+            for start in starts.iter_mut() {
+                let end = std::mem::replace(start, first + begin);
+                items[begin as usize..end as usize].sort_unstable();
+                begin = end;
             }
         });
-        for k in 0..keys {
-            start[k + 1] += start[k];
-        }
-        let mut sorted = vec![0u64; start[keys] as usize];
-        let mut parts: Vec<(usize, Vec<u32>, &mut [u64])> = Vec::new();
-        let mut rest = sorted.as_mut_slice();
-        for first in (0..keys).step_by(each) {
-            let end = (first + each).min(keys);
-            let (mine, others) = rest.split_at_mut((start[end] - start[first]) as usize);
-            parts.push((first, start[first..end].to_vec(), mine));
-            rest = others;
-        }
-        parts.into_par_iter().for_each(|(first, mut next, mine)| {
-            let base = start[first];
-            for (key, payload) in items.clone() {
-                if let Some(at) = next.get_mut((key as usize).wrapping_sub(first)) {
-                    mine[(*at - base) as usize] = payload;
-                    *at += 1;
-                }
-            }
-        });
-        sort_each(&start, &mut sorted);
-        Self { start, items: sorted }
+        start[keys] = items.len() as u32;
+        Self { start, items }
     }
 
     /// The payloads of `key`, ascending.
@@ -60,26 +77,39 @@ impl Buckets {
     }
 }
 
-/// Fewer keys than this are sorted by one thread.
-const FEW: usize = 1 << 14;
+/// Fewer items than this are sorted as they are.
+const FEW: usize = 1 << 12;
 
-/// More threads gain nothing where each goes through all items.
-const MOST_PARTS: usize = 16;
+/// So many parts the keys are divided in.
+const PARTS: usize = 256;
 
-/// So many buckets are sorted at once.
-const AT_ONCE: usize = 1 << 14;
+/// So many items are sorted by part at once.
+const CHUNK: usize = 1 << 17;
 
-/// Sorts the items of each bucket, which begin where `start` says, counted from its first entry.
-fn sort_each(start: &[u32], items: &mut [u64]) {
-    let buckets = start.len() - 1;
-    if buckets > AT_ONCE {
-        let (low, high) = (&start[..=buckets / 2], &start[buckets / 2..]);
-        let (first, second) = items.split_at_mut((high[0] - start[0]) as usize);
-        rayon::join(|| sort_each(low, first), || sort_each(high, second));
-        return;
+/// Some of the items, sorted by the part that their keys are in.
+struct Chunk {
+    starts: [u32; PARTS + 1],
+    items: Vec<u32>,
+}
+
+impl Chunk {
+    fn of(range: std::ops::Range<usize>, part: impl Fn(usize) -> Option<usize>) -> Self {
+        let parts: Vec<u16> = range.clone().map(|n| part(n).map_or(PARTS, |part| part) as u16).collect();
+        // Those without a key come last.
+        let mut starts = [0u32; PARTS + 2];
+        parts.iter().for_each(|&part| starts[part as usize + 1] += 1);
+        (0..=PARTS).for_each(|part| starts[part + 1] += starts[part]);
+        let (mut at, mut items) = (starts, vec![0; range.len()]);
+        for (n, &part) in range.zip(&parts) {
+            let place = &mut at[part as usize];
+            items[*place as usize] = n as u32;
+            *place += 1;
+        }
+        Self { starts: std::array::from_fn(|part| starts[part]), items }
     }
-    for bucket in start.windows(2) {
-        items[(bucket[0] - start[0]) as usize..(bucket[1] - start[0]) as usize].sort_unstable();
+
+    fn of_part(&self, part: usize) -> &[u32] {
+        &self.items[self.starts[part] as usize..self.starts[part + 1] as usize]
     }
 }
 
@@ -111,13 +141,12 @@ pub(crate) struct Edges<'a> {
 impl<'a> Edges<'a> {
     /// Collects the edges; every index is below `vertices`.
     pub(crate) fn new(triangles: &'a [[u32; 3]], vertices: usize) -> Self {
-        let halves = triangles.iter().enumerate().filter(|(_, t)| !has_repeated_index(**t)).flat_map(|(id, t)| {
-            (0..3).map(move |k| {
-                let (a, b) = (t[k], t[(k + 1) % 3]);
-                (a.min(b), (u64::from(a.max(b)) << 32) | (3 * id + k) as u64)
-            })
-        });
-        Self { triangles, buckets: Buckets::new(vertices, halves) }
+        let half = |n: usize| {
+            let (t, k) = (triangles[n / 3], n % 3);
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            (!has_repeated_index(t)).then(|| (a.min(b), (u64::from(a.max(b)) << 32) | n as u64))
+        };
+        Self { triangles, buckets: Buckets::new(vertices, 3 * triangles.len(), half) }
     }
 
     /// Calls `visit` with every edge, by vertices.
@@ -226,8 +255,11 @@ pub(crate) fn copies(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 2]> {
         t.sort_unstable();
         t
     };
-    let items = triangles.iter().enumerate().filter(|(_, t)| !has_repeated_index(**t));
-    let buckets = Buckets::new(vertices, items.map(|(id, t)| (t[0].min(t[1]).min(t[2]), id as u64)));
+    let item = |id: usize| {
+        let [a, b, c] = triangles[id];
+        (!has_repeated_index([a, b, c])).then(|| (a.min(b).min(c), id as u64))
+    };
+    let buckets = Buckets::new(vertices, triangles.len(), item);
     let of_key = |key: usize| {
         let ids = buckets.get(key);
         let mut group: Vec<([u32; 3], u32)> = Vec::new();
@@ -242,4 +274,26 @@ pub(crate) fn copies(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 2]> {
         (0..buckets.keys()).into_par_iter().with_min_len(1 << 10).flat_map_iter(of_key).collect();
     found.sort_unstable();
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn buckets_hold_the_payloads_of_their_keys_in_order() {
+        // Some items have no key, and most keys no item where there are more of them.
+        let item = |n: usize| (n % 5 != 0).then(|| ((n * 7919 % 100_003) as u32, (n * 31 % 1009) as u64));
+        for (count, limit) in
+            [(0, 3), (50, 100_003), (FEW - 1, 100_003), (FEW, 100_003), (3 * CHUNK + 7, 100_003), (FEW, 2)]
+        {
+            let of = |n: usize| item(n).map(|(key, payload)| (key % limit, payload));
+            let mut expected = vec![Vec::new(); limit as usize];
+            (0..count).filter_map(of).for_each(|(key, payload)| expected[key as usize].push(payload));
+            expected.iter_mut().for_each(|list| list.sort_unstable());
+            let buckets = Buckets::new(limit as usize, count, of);
+            assert_eq!(buckets.keys(), limit as usize);
+            assert!((0..limit as usize).all(|key| buckets.get(key) == expected[key]), "{count} items, {limit} keys");
+        }
+    }
 }

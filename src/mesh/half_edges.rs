@@ -90,11 +90,11 @@ impl HalfEdges {
     fn pair_up(&mut self) -> Result<(), NotManifold> {
         let halves = 0..3 * self.triangles.len() as u32;
         let ends = |h: u32| (self.origin(h).min(self.target(h)), self.origin(h).max(self.target(h)));
-        let by_low = halves.clone().map(|h| {
-            let (low, high) = ends(h);
-            (low, (u64::from(high) << 32) | u64::from(h))
-        });
-        let buckets = Buckets::new(self.outgoing.len(), by_low);
+        let by_low = |h: usize| {
+            let (low, high) = ends(h as u32);
+            Some((low, (u64::from(high) << 32) | h as u64))
+        };
+        let buckets = Buckets::new(self.outgoing.len(), 3 * self.triangles.len(), by_low);
         for low in 0..buckets.keys() {
             for edge in buckets.get(low).chunk_by(|a, b| a >> 32 == b >> 32) {
                 let not_manifold = NotManifold { edge: [low as u32, (edge[0] >> 32) as u32] };

@@ -3,8 +3,6 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::weld::first_of_equal;
-
 /// An axis-aligned box, in the space of the points it was made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
@@ -136,23 +134,5 @@ impl TriMesh {
         let first = self.positions.len() as u32;
         self.positions.extend_from_slice(&other.positions);
         self.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
-    }
-
-    /// The same surface with vertices of equal coordinates merged (−0 equals 0) and unused ones
-    /// dropped; triangles keep their order and number. Vertices are numbered by first use.
-    pub fn welded(&self) -> Self {
-        const NONE: u32 = u32::MAX;
-        let first = first_of_equal(&self.positions);
-        let (mut numbers, mut positions) = (vec![NONE; first.len()], Vec::new());
-        let mut weld = |v: u32| {
-            let number = &mut numbers[first[v as usize] as usize];
-            if *number == NONE {
-                *number = positions.len() as u32;
-                positions.push(self.positions[v as usize]);
-            }
-            *number
-        };
-        let triangles = self.triangles.iter().map(|t| t.map(&mut weld)).collect();
-        Self { positions, triangles }
     }
 }

@@ -62,6 +62,26 @@ pub(crate) fn welded_triangles(mesh: &TriMesh) -> Vec<[u32; 3]> {
     mesh.triangles.par_iter().map(|t| t.map(|v| first[v as usize])).collect()
 }
 
+impl TriMesh {
+    /// The same surface with vertices of equal coordinates merged (−0 equals 0) and unused ones
+    /// dropped; triangles keep their order and number. Vertices are numbered by first use.
+    pub fn welded(&self) -> Self {
+        const NONE: u32 = u32::MAX;
+        let first = first_of_equal(&self.positions);
+        let (mut numbers, mut positions) = (vec![NONE; first.len()], Vec::new());
+        let mut weld = |v: u32| {
+            let number = &mut numbers[first[v as usize] as usize];
+            if *number == NONE {
+                *number = positions.len() as u32;
+                positions.push(self.positions[v as usize]);
+            }
+            *number
+        };
+        let triangles = self.triangles.iter().map(|t| t.map(&mut weld)).collect();
+        Self { positions, triangles }
+    }
+}
+
 /// Whether a triangle names a vertex twice.
 #[inline]
 pub(crate) fn has_repeated_index([a, b, c]: [u32; 3]) -> bool {

@@ -41,7 +41,7 @@ impl Loops {
     /// Cuts a closed chain of edges into loops that visit no point twice.
     fn of(edges: &[[u32; 2]], points: &[DVec3]) -> Self {
         let mut loops = Self::default();
-        let from = Buckets::new(points.len(), edges.iter().map(|&[a, b]| (a, u64::from(b))));
+        let from = Buckets::new(points.len(), edges.len(), |n| Some((edges[n][0], u64::from(edges[n][1]))));
         let mut used = vec![0; points.len()];
         let mut place = vec![None; points.len()];
         let mut path: Vec<u32> = Vec::new();
@@ -88,13 +88,12 @@ impl Loops {
 fn uncancelled(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let vertices = || triangles.iter().flatten().copied();
     let (Some(low), Some(high)) = (vertices().min(), vertices().max()) else { return Vec::new() };
-    let around = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
     // The smaller vertex is the key; the larger one and the edge's way are the payload.
-    let items = triangles.iter().flat_map(around).filter(|[a, b]| a != b).map(|[a, b]| match a < b {
-        true => (a - low, u64::from(b) << 1),
-        false => (b - low, u64::from(a) << 1 | 1),
-    });
-    let buckets = Buckets::new((high - low) as usize + 1, items);
+    let item = |n: usize| {
+        let (a, b) = (triangles[n / 3][n % 3], triangles[n / 3][(n + 1) % 3]);
+        (a != b).then(|| if a < b { (a - low, u64::from(b) << 1) } else { (b - low, u64::from(a) << 1 | 1) })
+    };
+    let buckets = Buckets::new((high - low) as usize + 1, 3 * triangles.len(), item);
     let mut left = Vec::new();
     for key in 0..buckets.keys() {
         for same in buckets.get(key).chunk_by(|a, b| a >> 1 == b >> 1) {

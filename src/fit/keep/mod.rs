@@ -191,5 +191,5 @@ fn near(kept: &Kept, points: &[DVec3], reach: f64) -> Vec<u32> {
             })
         })
     };
-    if points.is_empty() { Vec::new() } else { kept.facets().into_iter().filter(is_near).collect() }
+    if points.is_empty() { Vec::new() } else { kept.facets().into_par_iter().filter(is_near).collect() }
 }

@@ -43,6 +43,7 @@ impl TriangleFrame {
     }
 
     /// How far a point, lattice coordinates, is from the triangle at least, h: from the ball around its longest side that holds it.
+    #[inline]
     pub(super) fn at_least(&self, point: Vec3) -> f32 {
         let [a, h, b] = self.sizes;
         let middle = (a - b) / 2.0;
@@ -52,6 +53,7 @@ impl TriangleFrame {
 
     /// The signed distance of `voxel`, h. The paper takes the side of the triangle's plane for the sign; here it is that of the
     /// pseudonormal at the nearest point, which holds beyond the half-angle planes, too.
+    #[inline]
     pub fn signed(&self, voxel: IVec3) -> f32 {
         let from = (voxel - self.base).as_vec3() - self.origin;
         let [across, s, t] = self.axes.map(|axis| axis.dot(from));
