@@ -62,11 +62,13 @@ impl Exact {
         (0..3).all(is_whole).then(|| nearest.map(|x| x as i32))
     }
 
-    fn hash(&self) -> u64 {
+    /// The same number however the point was made; `None` where `w` is a multiple of [`PRIME`], which happens at the ends of the lattice.
+    fn hash(&self) -> Option<u64> {
+        let w = self.w.wide().residue();
         let [x, y, z] = self.at.map(|x| x.wide().residue());
         // Multipliers without a pattern mix the coordinates.
         let sum = (x + times(y, 0x9e37_79b9_7f4a_7c15 & PRIME)) % PRIME + times(z, 0xc2b2_ae3d_27d4_eb4f & PRIME);
-        times(sum % PRIME, inverse(self.w.wide().residue()))
+        (w != 0).then(|| times(sum % PRIME, inverse(w)))
     }
 
     fn equals(&self, other: &Self) -> bool {
@@ -102,14 +104,14 @@ pub(crate) struct Made {
     exact: Exact,
     pub(crate) approximate: DVec3,
     lattice: Option<[i32; 3]>,
-    hash: u64,
+    hash: Option<u64>,
 }
 
 impl Made {
     pub(crate) fn new(exact: Exact) -> Self {
         let approximate = exact.approximate();
         let lattice = exact.as_lattice(approximate);
-        let hash = if lattice.is_some() { 0 } else { exact.hash() };
+        let hash = if lattice.is_some() { None } else { exact.hash() };
         Self { exact, approximate, lattice, hash }
     }
 
@@ -125,6 +127,8 @@ pub(crate) struct Points {
     made: Vec<Exact>,
     approximate: Vec<DVec3>,
     by_hash: FxHashMap<u64, Vec<u32>>,
+    /// The points that have no hash as they were made first.
+    without_hash: Vec<u32>,
     by_place: FxHashMap<[i32; 3], u32>,
 }
 
@@ -155,12 +159,22 @@ impl Points {
         if let Some(at) = point.lattice {
             self.by_place.insert(at, new);
         } else {
-            let (made, first) = (&self.made, self.vertices.len());
-            let same = self.by_hash.entry(point.hash).or_default();
-            if let Some(&id) = same.iter().find(|&&id| made[id as usize - first].equals(&point.exact)) {
+            let first = self.vertices.len();
+            let equals = |id: &u32| self.made[*id as usize - first].equals(&point.exact);
+            let same = point.hash.and_then(|hash| self.by_hash.get(&hash));
+            if let Some(&id) = same.into_iter().flatten().chain(&self.without_hash).find(|id| equals(id)) {
                 return id;
             }
-            same.push(new);
+            match point.hash {
+                Some(hash) => self.by_hash.entry(hash).or_default().push(new),
+                None => {
+                    // It may have been made in another way before.
+                    if let Some(id) = (first as u32..new).find(equals) {
+                        return id;
+                    }
+                    self.without_hash.push(new);
+                }
+            }
         }
         self.made.push(point.exact);
         self.approximate.push(point.approximate);

@@ -184,3 +184,21 @@ fn the_largest_triangles_do_not_overflow() {
     let exact = Exact::of_planes([&planes[0], &planes[1], &planes[2]]).expect("one point");
     assert!(planes.iter().all(|plane| exact.side_of(plane) == 0));
 }
+
+/// The planes through this edge meet the third one in a point whose common divisor is a multiple of the prime that points are found again by.
+#[test]
+fn a_point_without_a_hash_has_one_number_too() {
+    const END: i32 = 1 << 30;
+    let (a, b) = ([END - 1, -1, -END], [-END, END - 2, END - 2]);
+    let plane = Plane::through([[END, 0, 0], [0, 0, 0], [0, 0, -1]]);
+    let [p, q] = [0, 1].map(|y| Plane::through([a, b, [END, y, END]]));
+    let on_edge = || Made::new(Exact::on_line([a, b], plane.value(a), plane.value(b)));
+    let of_planes = || Made::new(Exact::of_planes([&p, &plane, &q]).expect("a point"));
+    for made in [[on_edge(), of_planes()], [of_planes(), on_edge()], [of_planes(), of_planes()]] {
+        let mut points = Points::new(vec![a, b]);
+        points.expect(0..2);
+        let [first, again] = made.map(|made| points.number(&made));
+        assert_eq!(first, again);
+        assert_eq!(points.len(), 3);
+    }
+}

@@ -61,6 +61,10 @@ pub(super) fn keep(
             break;
         }
         let border = Border::new(&kept);
+        if border.segments.iter().any(|s| facets.is_beyond(kept.mesh.positions[s.from as usize])) {
+            // The contour has nothing to put there.
+            break;
+        }
         let misfit = match joined(initial, facets, &kept, &border, h) {
             Ok(joined) => match mended(joined, facets, h, progress)? {
                 Ok(surface) => return Ok((surface, kept.facets().len())),
