@@ -283,7 +283,7 @@ mod tests {
     #[test]
     fn buckets_hold_the_payloads_of_their_keys_in_order() {
         // Some items have no key, and most keys no item where there are more of them.
-        let item = |n: usize| (n % 5 != 0).then(|| ((n * 7919 % 100_003) as u32, (n * 31 % 1009) as u64));
+        let item = |n: usize| (!n.is_multiple_of(5)).then(|| ((n * 7919 % 100_003) as u32, (n * 31 % 1009) as u64));
         for (count, limit) in
             [(0, 3), (50, 100_003), (FEW - 1, 100_003), (FEW, 100_003), (3 * CHUNK + 7, 100_003), (FEW, 2)]
         {

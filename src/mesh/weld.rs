@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn the_first_of_equal_keys_is_found_in_many_as_in_few() {
         // Every seventh and some far ones repeat.
-        let key = |n: usize| (n % 7 * 1000 + n / 50, n % 3 == 0);
+        let key = |n: usize| (n % 7 * 1000 + n / 50, n.is_multiple_of(3));
         for count in [0, 1, 1000, CHUNK - 1, CHUNK, 3 * CHUNK + 5] {
             let mut known = std::collections::BTreeMap::new();
             let expected: Vec<u32> = (0..count).map(|n| *known.entry(key(n)).or_insert(n as u32)).collect();
