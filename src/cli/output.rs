@@ -86,12 +86,14 @@ fn write_file<T>(
 /// What `look` finds in a file, while the system puts it on the disk.
 fn synced<T>(file: &File, path: &Path, look: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
     std::thread::scope(|scope| {
-        let sync = scope.spawn(|| file.sync_all());
+        let sync = std::thread::Builder::new().spawn_scoped(scope, || file.sync_all());
         let found = look()?;
-        match sync.join() {
-            Ok(synced) => synced.map_err(|e| unwritable(path, &e)).map(|()| found),
-            Err(_) => Err(Failure::internal("the file could not be put on the disk")),
-        }
+        let synced = match sync.map(std::thread::ScopedJoinHandle::join) {
+            Ok(Ok(synced)) => synced,
+            // There was no thread to be had for it.
+            _ => file.sync_all(),
+        };
+        synced.map_err(|e| unwritable(path, &e)).map(|()| found)
     })
 }
 
@@ -136,7 +138,7 @@ pub fn write_grid(
     Ok(OutputEntry { path, format: format.to_string(), bytes, sha256, unit, validity: None })
 }
 
-/// Lets `write` write to `out`. Returns the hash of what went through, made on a thread of its own, and its bytes.
+/// Lets `write` write to `out`. Returns the hash of what went through, made on a thread of its own if there is one to be had, and its bytes.
 fn hash_of(
     out: &mut dyn Write,
     session: &Session,
@@ -144,27 +146,43 @@ fn hash_of(
 ) -> std::io::Result<(String, u64)> {
     std::thread::scope(|scope| {
         let (pieces, received) = sync_channel::<Vec<u8>>(PIECES);
-        let hash = scope.spawn(move || {
+        let all = move || {
             let mut hash = Sha256::new();
             received.iter().for_each(|piece| hash.update(piece));
-            hex(&hash.finalize())
-        });
-        let mut passing = Passing { out, pieces, bytes: 0, session };
+            hash
+        };
+        let beside = std::thread::Builder::new().spawn_scoped(scope, all).ok();
+        let hash = if beside.is_some() { Hash::Beside(pieces) } else { Hash::Here(Box::new(Sha256::new())) };
+        let mut passing = Passing { out, hash, bytes: 0, session };
         write(&mut passing).and_then(|()| passing.flush())?;
-        let bytes = passing.bytes;
-        drop(passing);
-        let hash = hash.join().map_err(|_| std::io::Error::other("no hash could be made"))?;
-        Ok((hash, bytes))
+        let Passing { hash, bytes, .. } = passing;
+        let hash = match (hash, beside) {
+            (Hash::Here(hash), _) => *hash,
+            (Hash::Beside(pieces), Some(beside)) => {
+                drop(pieces);
+                beside.join().map_err(|_| std::io::Error::other("no hash could be made"))?
+            }
+            (Hash::Beside(_), None) => return Err(std::io::Error::other("no hash could be made")),
+        };
+        Ok((hex(&hash.finalize()), bytes))
     })
 }
 
 /// So many pieces wait to be hashed, at most.
 const PIECES: usize = 4;
 
-/// Counts what goes through it, passes it on to be hashed, and stops when the run is to stop.
+/// Where the hash is made.
+enum Hash {
+    /// By another thread, which gets pieces.
+    Beside(SyncSender<Vec<u8>>),
+    /// By this one.
+    Here(Box<Sha256>),
+}
+
+/// Counts what goes through it, hashes it, and stops when the run is to stop.
 struct Passing<'a> {
     out: &'a mut dyn Write,
-    pieces: SyncSender<Vec<u8>>,
+    hash: Hash,
     bytes: u64,
     session: &'a Session,
 }
@@ -173,7 +191,10 @@ impl Write for Passing<'_> {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         self.session.progress.check().map_err(std::io::Error::other)?;
         let written = self.out.write(bytes)?;
-        self.pieces.send(bytes[..written].to_vec()).map_err(std::io::Error::other)?;
+        match &mut self.hash {
+            Hash::Beside(pieces) => pieces.send(bytes[..written].to_vec()).map_err(std::io::Error::other)?,
+            Hash::Here(hash) => hash.update(&bytes[..written]),
+        }
         self.bytes += written as u64;
         Ok(written)
     }

@@ -14,12 +14,7 @@ impl Buckets {
     /// Sorts items 0 to `count` - 1, those that `item` gives (key below `keys`, payload), by key, then payload.
     pub(crate) fn new(keys: usize, count: usize, item: impl Fn(usize) -> Option<(u32, u64)> + Sync) -> Self {
         if count < FEW {
-            let mut given: Vec<(u32, u64)> = (0..count).filter_map(item).collect();
-            given.sort_unstable();
-            let mut start = vec![0u32; keys + 1];
-            given.iter().for_each(|&(key, _)| start[key as usize + 1] += 1);
-            (0..keys).for_each(|k| start[k + 1] += start[k]);
-            return Self { start, items: given.into_iter().map(|(_, payload)| payload).collect() };
+            return Self::on_one_thread(keys, count, item);
         }
         // Items are sorted by part first, so that all that follows is near in memory, and each part is for one thread.
         let part = |n: usize| item(n).map(|(key, _)| key as usize * PARTS / keys);
@@ -64,6 +59,16 @@ impl Buckets {
         });
         start[keys] = items.len() as u32;
         Self { start, items }
+    }
+
+    /// The same made by the calling thread alone.
+    pub(crate) fn on_one_thread(keys: usize, count: usize, item: impl Fn(usize) -> Option<(u32, u64)>) -> Self {
+        let mut given: Vec<(u32, u64)> = (0..count).filter_map(item).collect();
+        given.sort_unstable();
+        let mut start = vec![0u32; keys + 1];
+        given.iter().for_each(|&(key, _)| start[key as usize + 1] += 1);
+        (0..keys).for_each(|k| start[k + 1] += start[k]);
+        Self { start, items: given.into_iter().map(|(_, payload)| payload).collect() }
     }
 
     /// The payloads of `key`, ascending.

@@ -41,7 +41,7 @@ impl Loops {
     /// Cuts a closed chain of edges into loops that visit no point twice.
     fn of(edges: &[[u32; 2]], points: &[DVec3]) -> Self {
         let mut loops = Self::default();
-        let from = Buckets::new(points.len(), edges.len(), |n| Some((edges[n][0], u64::from(edges[n][1]))));
+        let from = Buckets::on_one_thread(points.len(), edges.len(), |n| Some((edges[n][0], u64::from(edges[n][1]))));
         let mut used = vec![0; points.len()];
         let mut place = vec![None; points.len()];
         let mut path: Vec<u32> = Vec::new();
@@ -93,7 +93,7 @@ fn uncancelled(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
         let (a, b) = (triangles[n / 3][n % 3], triangles[n / 3][(n + 1) % 3]);
         (a != b).then(|| if a < b { (a - low, u64::from(b) << 1) } else { (b - low, u64::from(a) << 1 | 1) })
     };
-    let buckets = Buckets::new((high - low) as usize + 1, 3 * triangles.len(), item);
+    let buckets = Buckets::on_one_thread((high - low) as usize + 1, 3 * triangles.len(), item);
     let mut left = Vec::new();
     for key in 0..buckets.keys() {
         for same in buckets.get(key).chunk_by(|a, b| a >> 1 == b >> 1) {

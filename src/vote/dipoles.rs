@@ -93,12 +93,30 @@ impl Face {
 impl WindingTree {
     /// The tree over the triangles `range` of `mesh`; points are in the mesh's own space.
     pub fn new(mesh: &TriMesh, range: std::ops::Range<usize>, progress: &Progress) -> Result<Self, Stopped> {
+        Self::made(mesh, range, Threads::All, progress)
+    }
+
+    /// The same made by the calling thread alone.
+    pub(super) fn on_one_thread(
+        mesh: &TriMesh,
+        range: std::ops::Range<usize>,
+        progress: &Progress,
+    ) -> Result<Self, Stopped> {
+        Self::made(mesh, range, Threads::One, progress)
+    }
+
+    fn made(
+        mesh: &TriMesh,
+        range: std::ops::Range<usize>,
+        threads: Threads,
+        progress: &Progress,
+    ) -> Result<Self, Stopped> {
         let bounds = Bounds::of(range.clone().flat_map(|t| mesh.corners(t)));
         let longest = bounds.map_or(0.0, |b| b.diagonal()) / PIECES;
         let mut faces = Vec::with_capacity(range.len());
         let mut spare = MOST_PIECES;
         range.for_each(|t| cut(mesh.corners(t), longest, &mut spare, &mut faces));
-        let nodes = branch(&mut faces, 0, progress)?.flattened();
+        let nodes = branch(&mut faces, 0, threads, progress)?.flattened();
         Ok(Self { nodes, faces })
     }
 
@@ -177,6 +195,13 @@ pub(super) fn complete(above: f64, rough: f64) -> f64 {
     w + (rough - w).round()
 }
 
+/// Who makes a tree.
+#[derive(Debug, Clone, Copy)]
+enum Threads {
+    One,
+    All,
+}
+
 /// Part of a tree in the making.
 enum Branch {
     /// All of it: the root first, children by their place in the list.
@@ -186,7 +211,7 @@ enum Branch {
 }
 
 /// The tree over `faces`, which are sorted for it; they begin at number `first` of all. Parts of many are made side by side.
-fn branch(faces: &mut [Face], first: usize, progress: &Progress) -> Result<Branch, Stopped> {
+fn branch(faces: &mut [Face], first: usize, threads: Threads, progress: &Progress) -> Result<Branch, Stopped> {
     if faces.len() < CHECK_FROM {
         return Ok(Branch::Whole(subtree(faces, first)));
     }
@@ -194,7 +219,11 @@ fn branch(faces: &mut [Face], first: usize, progress: &Progress) -> Result<Branc
     let root = node(faces, first);
     let (low, high) = halved(faces);
     let middle = first + low.len();
-    let (low, high) = rayon::join(|| branch(low, first, progress), || branch(high, middle, progress));
+    let (mut low, mut high) = (|| branch(low, first, threads, progress), || branch(high, middle, threads, progress));
+    let (low, high) = match threads {
+        Threads::All => rayon::join(low, high),
+        Threads::One => (low(), high()),
+    };
     Ok(Branch::Fork(root, Box::new([low?, high?])))
 }
 

@@ -82,8 +82,9 @@ impl<'a> Winding<'a> {
 
     pub(super) fn trees(&self) -> Result<&[WindingTree], Stopped> {
         let trees = self.trees.get_or_init(|| {
+            // Not on all threads: one that waited for others here could be handed a brick that waits for it. The same holds for rims.
             let all = 0..self.operands.count();
-            apart(|| all.map(|n| WindingTree::new(self.soup, self.operands.range(n), &self.progress)).collect())
+            all.map(|n| WindingTree::on_one_thread(self.soup, self.operands.range(n), &self.progress)).collect()
         });
         trees.as_deref().map_err(|&stopped| stopped)
     }
@@ -92,7 +93,7 @@ impl<'a> Winding<'a> {
     pub(super) fn rims(&self) -> Result<&[Rim], Stopped> {
         let rims = self.rims.get_or_init(|| {
             let all = 0..self.operands.count();
-            apart(|| all.map(|n| Rim::new(self.soup, self.operands.range(n), &self.progress)).collect())
+            all.map(|n| Rim::new(self.soup, self.operands.range(n), &self.progress)).collect()
         });
         rims.as_deref().map_err(|&stopped| stopped)
     }
@@ -101,17 +102,4 @@ impl<'a> Winding<'a> {
     pub(super) fn to_model(&self, p: DVec3) -> DVec3 {
         self.lattice.to_model(p)
     }
-}
-
-/// Makes something on threads of its own. While others wait for it, none of theirs may take part: one that waited for its share here could be handed a brick
-/// that waits for all of it.
-fn apart<T: Send>(make: impl FnOnce() -> T + Send) -> T {
-    let threads = rayon::ThreadPoolBuilder::new().num_threads(rayon::current_num_threads()).build();
-    std::thread::scope(|scope| {
-        let work = scope.spawn(|| match &threads {
-            Ok(threads) => threads.install(make),
-            Err(_) => make(),
-        });
-        work.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })
 }
