@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
 use std::sync::mpsc::{SyncSender, sync_channel};
+use std::thread::ScopedJoinHandle;
 
 use sha2::{Digest, Sha256};
 
@@ -88,7 +89,7 @@ fn synced<T>(file: &File, path: &Path, look: impl FnOnce() -> Result<T, Failure>
     std::thread::scope(|scope| {
         let sync = std::thread::Builder::new().spawn_scoped(scope, || file.sync_all());
         let found = look()?;
-        let synced = match sync.map(std::thread::ScopedJoinHandle::join) {
+        let synced = match sync.map(ScopedJoinHandle::join) {
             Ok(Ok(synced)) => synced,
             // There was no thread to be had for it.
             _ => file.sync_all(),
@@ -151,18 +152,19 @@ fn hash_of(
             received.iter().for_each(|piece| hash.update(piece));
             hash
         };
-        let beside = std::thread::Builder::new().spawn_scoped(scope, all).ok();
-        let hash = if beside.is_some() { Hash::Beside(pieces) } else { Hash::Here(Box::new(Sha256::new())) };
+        let hash = match std::thread::Builder::new().spawn_scoped(scope, all) {
+            Ok(thread) => Hash::Beside(pieces, thread),
+            Err(_) => Hash::Here(Box::new(Sha256::new())),
+        };
         let mut passing = Passing { out, hash, bytes: 0, session };
         write(&mut passing).and_then(|()| passing.flush())?;
         let Passing { hash, bytes, .. } = passing;
-        let hash = match (hash, beside) {
-            (Hash::Here(hash), _) => *hash,
-            (Hash::Beside(pieces), Some(beside)) => {
+        let hash = match hash {
+            Hash::Here(hash) => *hash,
+            Hash::Beside(pieces, thread) => {
                 drop(pieces);
-                beside.join().map_err(|_| std::io::Error::other("no hash could be made"))?
+                thread.join().map_err(|_| std::io::Error::other("no hash could be made"))?
             }
-            (Hash::Beside(_), None) => return Err(std::io::Error::other("no hash could be made")),
         };
         Ok((hex(&hash.finalize()), bytes))
     })
@@ -172,27 +174,27 @@ fn hash_of(
 const PIECES: usize = 4;
 
 /// Where the hash is made.
-enum Hash {
+enum Hash<'scope> {
     /// By another thread, which gets pieces.
-    Beside(SyncSender<Vec<u8>>),
+    Beside(SyncSender<Vec<u8>>, ScopedJoinHandle<'scope, Sha256>),
     /// By this one.
     Here(Box<Sha256>),
 }
 
 /// Counts what goes through it, hashes it, and stops when the run is to stop.
-struct Passing<'a> {
+struct Passing<'a, 'scope> {
     out: &'a mut dyn Write,
-    hash: Hash,
+    hash: Hash<'scope>,
     bytes: u64,
     session: &'a Session,
 }
 
-impl Write for Passing<'_> {
+impl Write for Passing<'_, '_> {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         self.session.progress.check().map_err(std::io::Error::other)?;
         let written = self.out.write(bytes)?;
         match &mut self.hash {
-            Hash::Beside(pieces) => pieces.send(bytes[..written].to_vec()).map_err(std::io::Error::other)?,
+            Hash::Beside(pieces, _) => pieces.send(bytes[..written].to_vec()).map_err(std::io::Error::other)?,
             Hash::Here(hash) => hash.update(&bytes[..written]),
         }
         self.bytes += written as u64;

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::parted::Parted;
 use super::weld::has_repeated_index;
 
 /// Items sorted by a small key, without a comparison sort: offsets and items.
@@ -16,28 +17,23 @@ impl Buckets {
         if count < FEW {
             return Self::on_one_thread(keys, count, item);
         }
-        // Items are sorted by part first, so that all that follows is near in memory, and each part is for one thread.
         let part = |n: usize| item(n).map(|(key, _)| key as usize * PARTS / keys);
         let end_of = |part: usize| (part * keys).div_ceil(PARTS);
-        let chunks: Vec<Chunk> = (0..count.div_ceil(CHUNK))
-            .into_par_iter()
-            .map(|chunk| Chunk::of(CHUNK * chunk..(CHUNK * (chunk + 1)).min(count), part))
-            .collect();
-        let size = |part: usize| chunks.iter().map(|chunk| chunk.of_part(part).len()).sum::<usize>();
+        let parted = Parted::new(count, PARTS, part);
         let mut start = vec![0u32; keys + 1];
-        let mut items = vec![0u64; (0..PARTS).map(size).sum()];
+        let mut items = vec![0u64; (0..PARTS).map(|part| parted.size(part)).sum()];
         let (mut starts, mut rest, mut before) = (&mut start[..keys], items.as_mut_slice(), 0);
         let mut parts = Vec::with_capacity(PARTS);
         for part in 0..PARTS {
             let (own, others) = starts.split_at_mut(end_of(part + 1) - end_of(part));
-            let (mine, left) = rest.split_at_mut(size(part));
+            let (mine, left) = rest.split_at_mut(parted.size(part));
             let first = before;
             before += mine.len() as u32;
             parts.push((part, own, mine, first));
             (starts, rest) = (others, left);
         }
         parts.into_par_iter().for_each(|(part, starts, items, first)| {
-            let given = || chunks.iter().flat_map(|chunk| chunk.of_part(part)).filter_map(|&n| item(n as usize));
+            let given = || parted.of(part).filter_map(&item);
             let at = |key: u32| key as usize - end_of(part);
             given().for_each(|(key, _)| starts[at(key)] += 1);
             let mut sum = 0;
@@ -87,36 +83,6 @@ const FEW: usize = 1 << 12;
 
 /// So many parts the keys are divided in.
 const PARTS: usize = 256;
-
-/// So many items are sorted by part at once.
-const CHUNK: usize = 1 << 17;
-
-/// Some of the items, sorted by the part that their keys are in.
-struct Chunk {
-    starts: [u32; PARTS + 1],
-    items: Vec<u32>,
-}
-
-impl Chunk {
-    fn of(range: std::ops::Range<usize>, part: impl Fn(usize) -> Option<usize>) -> Self {
-        let parts: Vec<u16> = range.clone().map(|n| part(n).map_or(PARTS, |part| part) as u16).collect();
-        // Those without a key come last.
-        let mut starts = [0u32; PARTS + 2];
-        parts.iter().for_each(|&part| starts[part as usize + 1] += 1);
-        (0..=PARTS).for_each(|part| starts[part + 1] += starts[part]);
-        let (mut at, mut items) = (starts, vec![0; range.len()]);
-        for (n, &part) in range.zip(&parts) {
-            let place = &mut at[part as usize];
-            items[*place as usize] = n as u32;
-            *place += 1;
-        }
-        Self { starts: std::array::from_fn(|part| starts[part]), items }
-    }
-
-    fn of_part(&self, part: usize) -> &[u32] {
-        &self.items[self.starts[part] as usize..self.starts[part + 1] as usize]
-    }
-}
 
 /// The half-edges of one undirected edge, ascending. Half-edge 3t+k runs from corner k of triangle t to the next.
 pub(crate) struct Edge<'a> {
@@ -284,6 +250,7 @@ pub(crate) fn copies(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::parted::CHUNK;
 
     #[test]
     fn buckets_hold_the_payloads_of_their_keys_in_order() {

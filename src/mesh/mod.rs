@@ -16,6 +16,7 @@ mod mass;
 mod nearest_point;
 pub(crate) mod neighbours;
 mod packet;
+mod parted;
 mod plane;
 pub(crate) mod predicates;
 mod pseudonormals;

@@ -8,12 +8,10 @@ use rayon::prelude::*;
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use super::TriMesh;
+use super::parted::{CHUNK, Parted};
 
 /// Items whose keys have the same hash in some bits are looked at together: so many kinds of bits there are.
 const SHARDS: usize = 1 << 10;
-
-/// Of so many items the bits are sorted at once.
-const CHUNK: usize = 1 << 18;
 
 /// For each of `count` items the first one with an equal key, which all threads look for: items are sorted by some bits of their keys' hash, so that
 /// each part has its own small table. The result depends on the keys alone.
@@ -24,28 +22,12 @@ pub(crate) fn first_of_equal_keys<K: Copy + Eq + Hash>(count: usize, key: impl F
     }
     // The table takes its own bits from either end of the same hash.
     let shard = |n: usize| (FxBuildHasher.hash_one(key(n)) >> 20) as usize % SHARDS;
-    let chunks: Vec<(Vec<u32>, Vec<u32>)> = (0..count.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| {
-            let range = CHUNK * chunk..(CHUNK * (chunk + 1)).min(count);
-            let shards: Vec<u16> = range.clone().map(|n| shard(n) as u16).collect();
-            let mut starts = vec![0u32; SHARDS + 1];
-            shards.iter().for_each(|&s| starts[s as usize + 1] += 1);
-            (0..SHARDS).for_each(|s| starts[s + 1] += starts[s]);
-            let (mut at, mut sorted) = (starts.clone(), vec![0u32; range.len()]);
-            for (n, &s) in range.zip(&shards) {
-                sorted[at[s as usize] as usize] = n as u32;
-                at[s as usize] += 1;
-            }
-            (starts, sorted)
-        })
-        .collect();
+    let parted = Parted::new(count, SHARDS, |n| Some(shard(n)));
     let first: Vec<AtomicU32> = (0..count).into_par_iter().map(|_| AtomicU32::new(0)).collect();
     (0..SHARDS).into_par_iter().for_each(|s| {
-        let members = || chunks.iter().flat_map(|(starts, sorted)| &sorted[starts[s] as usize..starts[s + 1] as usize]);
         let mut known = FxHashMap::default();
-        for &n in members() {
-            first[n as usize].store(*known.entry(key(n as usize)).or_insert(n), Ordering::Relaxed);
+        for n in parted.of(s) {
+            first[n].store(*known.entry(key(n)).or_insert(n as u32), Ordering::Relaxed);
         }
     });
     first.into_iter().map(AtomicU32::into_inner).collect()

@@ -39,9 +39,8 @@ impl Ahead {
         // Which shells stand does not depend on the expression, only what becomes of them does.
         let apart = Apart::find(&soup, &Expression::union(operands.len()), options, &progress)?;
         let rest = apart.rest(&soup);
-        let keeps = options.fit.is_some_and(|fit| !fit.rebuild);
         let way = match options.method {
-            _ if rest.mesh.triangles.is_empty() || !keeps => Way::Voxel,
+            _ if rest.mesh.triangles.is_empty() || !options.keeps() => Way::Voxel,
             Method::Voxel => Way::Voxel,
             // There is no other way.
             Method::Exact => Way::Exact,

@@ -64,7 +64,6 @@ impl Apart {
         let shells = shells(&soup.mesh, &soup.operands);
         let mesh = options.precision.of_mesh(&soup.mesh);
         let bodies = shells.list.iter().filter(|shell| shell.is_body()).count();
-        let keeps = options.fit.is_some_and(|fit| !fit.rebuild);
         // A single open shell touches nothing but itself, which the fit looks at.
         let worth_looking = bodies > 0 && (shells.list.len() > 1 || shells.list[0].rims == 0);
         let contacts = match worth_looking {
@@ -84,7 +83,7 @@ impl Apart {
         };
         let in_soup = in_soup(soup);
         let crossings = places(&soup.mesh, &contacts.touched);
-        Ok(Self { shells, contacts, truth, buried, stand: keeps, in_soup, looked: worth_looking, crossings })
+        Ok(Self { shells, contacts, truth, buried, stand: options.keeps(), in_soup, looked: worth_looking, crossings })
     }
 
     /// What becomes of a shell in this run.

@@ -102,8 +102,7 @@ impl Job<'_> {
         stages: &mut Stages<'_>,
     ) -> Result<Exact, BooleanError> {
         let method = self.options.method;
-        let keeps = self.options.fit.is_some_and(|fit| !fit.rebuild);
-        if method == Method::Voxel || !keeps {
+        if method == Method::Voxel || !self.options.keeps() {
             return Ok(Exact::None);
         }
         stages.begin(Stage::Arrange)?;

@@ -111,6 +111,11 @@ impl Precision {
 }
 
 impl Options {
+    /// Whether triangles of the source that are right stay as they are.
+    pub(super) fn keeps(&self) -> bool {
+        self.fit.is_some_and(|fit| !fit.rebuild)
+    }
+
     /// The defaults at voxel size `voxel`.
     pub fn new(voxel: VoxelSize) -> Self {
         let SurfaceOptions { voxel, collapse, fit, max_memory, precision } = SurfaceOptions::new(voxel);

@@ -33,13 +33,16 @@ impl Job<'_> {
         standing: &Standing,
         stages: &mut Stages<'_>,
     ) -> Result<Option<Draft>, BooleanError> {
-        let keeps = self.options.fit.is_some_and(|fit| !fit.rebuild);
-        if !keeps || self.options.method != Method::Auto || self.options.vote != VoteRule::Winding {
+        if !self.options.keeps() || self.options.method != Method::Auto || self.options.vote != VoteRule::Winding {
+            return Ok(None);
+        }
+        let rims = plan.bare();
+        if rims.is_empty() {
             return Ok(None);
         }
         let soup = plan.over(rest);
         let Some(whole) = soup.mesh.bounds() else { return Ok(None) };
-        let Some(lattice) = window(&soup, &plan.bare(), &whole, self.h) else { return Ok(None) };
+        let Some(lattice) = window(&soup, &rims, &whole, self.h) else { return Ok(None) };
         let [min, max] = [DVec3::splat(CLEAR), (lattice.dims - 1).as_dvec3() - CLEAR].map(|p| lattice.to_model(p));
         let ground = Ground { lattice, finest: sizing::finest(&whole), window: Some(Bounds { min, max }) };
         let made = match self.on(&ground, soup.clone().into_owned(), stages) {
@@ -87,7 +90,10 @@ fn stays_beyond(made: &Draft, soup: &Soup, lattice: &Lattice) -> bool {
     };
     let mut times = vec![0u32; soup.source.len()];
     let mut lids = 0;
-    for (_, source) in made.sources.iter().enumerate().filter(|(t, _)| reaches_out(made.mesh.corners(*t))) {
+    for (t, source) in made.sources.iter().enumerate() {
+        if !reaches_out(made.mesh.corners(t)) {
+            continue;
+        }
         match *source {
             TriangleSource::Operand { triangle, .. } => {
                 let Ok(n) = soup.source.binary_search(&triangle) else { return false };

@@ -115,7 +115,7 @@ impl WindingTree {
         let longest = bounds.map_or(0.0, |b| b.diagonal()) / PIECES;
         let mut faces = Vec::with_capacity(range.len());
         let mut spare = MOST_PIECES;
-        range.for_each(|t| cut(mesh.corners(t), longest, &mut spare, &mut faces));
+        range.for_each(|t| cut(mesh.corners(t), longest, &mut spare, |piece| faces.push(Face::new(piece))));
         let nodes = branch(&mut faces, 0, threads, progress)?.flattened();
         Ok(Self { nodes, faces })
     }
@@ -330,13 +330,13 @@ impl Dipoles<'_> {
 
 /// Cuts triangles that are long beside the whole at their longest edge, so that dipoles stand for
 /// them at shorter distances. Each cut takes one of the `spare` pieces, until there are none.
-fn cut(corners: [DVec3; 3], longest: f64, spare: &mut usize, faces: &mut Vec<Face>) {
+pub(super) fn cut(corners: [DVec3; 3], longest: f64, spare: &mut usize, mut piece: impl FnMut([DVec3; 3])) {
     let mut stack = vec![corners];
     while let Some([a, b, c]) = stack.pop() {
         let lengths = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
         let turn = (0..3).max_by(|&i, &j| lengths[i].total_cmp(&lengths[j])).unwrap_or(0);
         if lengths[turn] <= longest * longest || *spare == 0 {
-            faces.push(Face::new([a, b, c]));
+            piece([a, b, c]);
             continue;
         }
         *spare -= 1;
@@ -416,14 +416,14 @@ pub(super) mod tests {
     fn long_triangles_are_cut_into_a_bounded_number_of_pieces_and_the_sum_stays() {
         let sliver = [DVec3::ZERO, DVec3::X, DVec3::new(0.5, 1e-3, 0.0)];
         let (mut spare, mut faces) = (100, Vec::new());
-        cut(sliver, 1.0 / 1024.0, &mut spare, &mut faces);
+        cut(sliver, 1.0 / 1024.0, &mut spare, |piece| faces.push(Face::new(piece)));
         assert_eq!((spare, faces.len()), (0, 101));
         let p = DVec3::new(0.3, 0.2, 0.01);
         let sum: f64 = faces.iter().map(|face| solid_angle_of(&face.corners, p)).sum();
         assert!((sum - solid_angle_of(&sliver, p)).abs() < 1e-12);
         // Where halving no longer makes anything shorter, the bound ends it.
         let far = sliver.map(|p| p + 1e15);
-        cut(far, 1e-3, &mut 1000, &mut faces);
+        cut(far, 1e-3, &mut 1000, |piece| faces.push(Face::new(piece)));
         assert!(faces.len() <= 101 + 1001);
     }
 }

@@ -8,9 +8,10 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::boundary::Loops;
+use super::dipoles;
 use super::expansion::Expansion;
 use super::phase::Phase;
-use crate::mesh::Bounds;
+use crate::mesh::{Bounds, Shape};
 use crate::progress::{Progress, Stopped};
 
 /// Loops whose edges all pass a place at more than this many of its radii are a polynomial of second degree there, which errs
@@ -158,13 +159,8 @@ impl Nearby {
 
 /// Whether an edge of a loop passes a point at less than `reach`.
 fn passes_within(points: &[DVec3], p: DVec3, reach: f64) -> bool {
-    let mut before = points[points.len() - 1];
-    points.iter().any(|&point| {
-        let (way, start) = (point - before, p - before);
-        let t = (start.dot(way) / way.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        before = point;
-        (start - way * t).length_squared() < reach * reach
-    })
+    let before = points.iter().cycle().skip(points.len() - 1);
+    before.zip(points).any(|(&a, &b)| [a, b].nearest(p).0.distance_squared(p) < reach * reach)
 }
 
 /// The loops with long triangles cut in two, and again, across their longest side.
@@ -177,25 +173,10 @@ pub(super) fn cut(loops: &Loops) -> Loops {
             pieces.close();
             continue;
         };
-        let mut stack = vec![triangle];
-        while let Some([a, b, c]) = stack.pop() {
-            let [ab, bc, ca] = [a.distance(b), b.distance(c), c.distance(a)];
-            if spare == 0 || ab.max(bc).max(ca) <= longest {
-                [a, b, c].into_iter().for_each(|p| pieces.push(p));
-                pieces.close();
-                continue;
-            }
-            spare -= 1;
-            let [a, b, c] = if ab >= bc && ab >= ca {
-                [a, b, c]
-            } else if bc >= ca {
-                [b, c, a]
-            } else {
-                [c, a, b]
-            };
-            let middle = (a + b) / 2.0;
-            stack.extend([[a, middle, c], [middle, b, c]]);
-        }
+        dipoles::cut(triangle, longest, &mut spare, |piece| {
+            piece.into_iter().for_each(|p| pieces.push(p));
+            pieces.close();
+        });
     }
     pieces
 }

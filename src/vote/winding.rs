@@ -11,7 +11,7 @@ use super::dipoles::WindingTree;
 use super::rim::Rim;
 use crate::lattice::Lattice;
 use crate::ldi::{Expression, Inside, Operands};
-use crate::mesh::{Bounds, TriMesh};
+use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
 
 /// The winding numbers of all operands at voxels. The trees are made when they are first needed:
@@ -69,10 +69,11 @@ impl<'a> Winding<'a> {
 
     /// Whether the operands reach beyond the lattice.
     pub(super) fn reaches_beyond(&self) -> bool {
-        let used =
-            self.soup.triangles.iter().flatten().map(|&v| self.lattice.to_lattice(self.soup.positions[v as usize]));
         let last = (self.lattice.dims - 1).as_dvec3();
-        Bounds::of(used).is_some_and(|b| b.min.cmplt(DVec3::ZERO).any() || b.max.cmpgt(last).any())
+        self.soup.bounds().is_some_and(|bounds| {
+            let [min, max] = [bounds.min, bounds.max].map(|p| self.lattice.to_lattice(p));
+            min.cmplt(DVec3::ZERO).any() || max.cmpgt(last).any()
+        })
     }
 
     /// What counts as inside of whole winding numbers.
