@@ -1,4 +1,4 @@
-//! Layered depth images, and distances by scan conversion of prisms ([`prism()`]), on the graphics processor, through Vulkan.
+//! Layered depth images ([`ldis`]) and exact distances over a lattice ([`distances`]) on the graphics processor, through Vulkan.
 //!
 //! For layered depth images the device finds which triangles each ray crosses, with the same integers and the same rule for ties as
 //! [`crate::ldi::rasterise`]; the depths are then computed here, by the same function. So the result is the same to the last
@@ -8,8 +8,8 @@ mod adapters;
 mod clock;
 mod device;
 mod error;
+mod field;
 mod peel;
-mod prism;
 mod programs;
 mod run;
 mod scan;
@@ -23,7 +23,7 @@ mod tests;
 pub use adapters::{AdapterEntry, AdapterKind, Wanted, adapters};
 pub use device::{Device, is_waiting};
 pub use error::{GpuError, INSTALL};
-pub use prism::prism;
+pub use field::{FieldLimits, FieldOptions, GpuField, distances};
 
 use std::sync::OnceLock;
 
@@ -82,6 +82,8 @@ pub struct PassTime {
     pub count: usize,
     /// Seconds of all of them.
     pub seconds: f64,
+    /// Seconds of these until the device had sent all; what is left is the main processor's.
+    pub sent: f64,
 }
 
 /// What a job moved, and how long its passes took.
@@ -93,6 +95,8 @@ pub struct GpuReport {
     pub bytes_down: u64,
     /// Times, when they were asked for.
     pub passes: Vec<PassTime>,
+    /// Seconds until the result was there, with all that either processor did, without opening the device.
+    pub seconds: f64,
 }
 
 /// The LDIs of `soup` in all 13 directions: what [`crate::ldi::ldis`] gives, to the last bit.
@@ -133,5 +137,5 @@ pub fn ldis(
         .enumerate()
         .map(|(direction, layers)| layers.into_inner().flatten().ok_or(GpuError::Nonsense { direction }));
     let layers = layers.collect::<Result<_, _>>()?;
-    Ok((layers, GpuReport { bytes_up: run.up, bytes_down: run.down, passes: run.passes() }))
+    Ok((layers, run.report()))
 }

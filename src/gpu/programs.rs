@@ -62,3 +62,34 @@ impl Scan {
         Self { sum_blocks: pipeline("sum_blocks"), raise_blocks: pipeline("raise_blocks") }
     }
 }
+
+/// Distances over a lattice.
+#[derive(Debug)]
+pub(super) struct Field {
+    pub count: wgpu::ComputePipeline,
+    pub enlist: wgpu::ComputePipeline,
+    pub open: wgpu::ComputePipeline,
+    pub mark: wgpu::ComputePipeline,
+    pub judge: wgpu::ComputePipeline,
+    pub share: wgpu::ComputePipeline,
+    pub measure: wgpu::ComputePipeline,
+    pub collect: wgpu::ComputePipeline,
+    pub scan: Scan,
+}
+
+impl Field {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let pipeline = |parts, entry| shaders::compute(device, parts, entry, &[]);
+        Self {
+            count: pipeline(shaders::ENLIST, "count"),
+            enlist: pipeline(shaders::ENLIST, "enlist"),
+            open: pipeline(shaders::OPEN, "open"),
+            mark: pipeline(shaders::MARK, "mark"),
+            judge: pipeline(shaders::JUDGE, "judge"),
+            share: pipeline(shaders::SHARE, "share"),
+            measure: pipeline(shaders::MEASURE, "measure"),
+            collect: pipeline(shaders::COLLECT, "collect"),
+            scan: Scan::new(device),
+        }
+    }
+}
