@@ -129,7 +129,7 @@ fn lattice(mesh: &TriMesh, at: f64) -> Done<Lattice> {
 /// What stays with the main processor whoever rasterises, and the bytes of what later stages work on.
 fn stages(mesh: &TriMesh, lattice: &Lattice, layers: Vec<Layers>) -> Done<()> {
     let vertices = snap(&mesh.positions, lattice);
-    let crossed: Vec<Crossed> = layers.iter().map(crossed).collect();
+    let crossed: Vec<Crossed<'_>> = layers.iter().map(crossed).collect();
     let time = best(|| {
         let part = |n: usize| {
             let (direction, crossed) = (layers[n].direction, std::slice::from_ref(&crossed[n]));
@@ -153,11 +153,12 @@ fn stages(mesh: &TriMesh, lattice: &Lattice, layers: Vec<Layers>) -> Done<()> {
 }
 
 /// What a device would send back for these layers.
-fn crossed(layers: &Layers) -> Crossed {
+fn crossed(layers: &Layers) -> Crossed<'_> {
     Crossed {
         low: layers.low,
         size: layers.size.map(|n| n as u32),
-        ends: layers.offsets[1..].to_vec(),
+        first: 0,
+        ends: layers.offsets[1..].into(),
         triangles: layers.hits.iter().map(|hit| hit.triangle()).collect(),
     }
 }

@@ -59,7 +59,7 @@ impl Device {
     pub(super) fn check_can(&self, method: GpuMethod) -> Result<(), GpuError> {
         let (can, lacks) = match method {
             GpuMethod::Peel => (self.entry.peel, "targets of 32-bit integers and depths"),
-            GpuMethod::Scatter => (self.entry.scatter, "buffers that fragments can write"),
+            GpuMethod::Scatter => (self.entry.scatter, "compute shaders"),
         };
         if can { Ok(()) } else { Err(GpuError::Incapable { adapter: self.entry.name.clone(), lacks: lacks.into() }) }
     }

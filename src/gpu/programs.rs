@@ -4,8 +4,6 @@ use super::shaders;
 
 /// Slots of triangles on the rays, as peeling draws them.
 pub(super) const SLOTS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-/// The target of scattering. Nothing is drawn to it: passes must have a target.
-pub(super) const TARGET: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// Finds the triangles that may cross the rays of a tile.
 #[derive(Debug)]
@@ -36,15 +34,14 @@ impl Peel {
 /// Counts the crossings of each ray, and writes them.
 #[derive(Debug)]
 pub(super) struct Scatter {
-    pub count: wgpu::RenderPipeline,
-    pub scatter: wgpu::RenderPipeline,
+    pub count: wgpu::ComputePipeline,
+    pub scatter: wgpu::ComputePipeline,
     pub scan: Scan,
 }
 
 impl Scatter {
     pub fn new(device: &wgpu::Device) -> Self {
-        let target = wgpu::ColorTargetState { format: TARGET, blend: None, write_mask: wgpu::ColorWrites::empty() };
-        let pipeline = |entry| shaders::render(device, shaders::SCATTER, entry, &[], target.clone(), None);
+        let pipeline = |entry| shaders::compute(device, shaders::SCATTER, entry, &[]);
         Self { count: pipeline("count"), scatter: pipeline("scatter"), scan: Scan::new(device) }
     }
 }

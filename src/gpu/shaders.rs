@@ -13,7 +13,7 @@ pub(super) const SETUP: &[&str] = &[WIDE, TRIANGLE, include_str!("../../shaders/
 /// Depth peeling.
 pub(super) const PEEL: &[&str] = &[WIDE, TRIANGLE, DRAW, include_str!("../../shaders/peel.wgsl")];
 /// Counting and scattering crossings.
-pub(super) const SCATTER: &[&str] = &[WIDE, TRIANGLE, DRAW, include_str!("../../shaders/scatter.wgsl")];
+pub(super) const SCATTER: &[&str] = &[WIDE, TRIANGLE, include_str!("../../shaders/scatter.wgsl")];
 /// Sorting features into the blocks of a region.
 pub(super) const ENLIST: &[&str] = &[WIDE, FEATURE, include_str!("../../shaders/field_enlist.wgsl")];
 /// Blocks that have any feature, close together.

@@ -13,7 +13,7 @@ mod rows;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::run::Run;
-use super::{Device, GpuError, GpuReport};
+use super::{Device, GpuError, GpuMethod, GpuReport};
 use crate::lattice::{BRICK_VOXELS, DistanceField, Lattice};
 use crate::mesh::TriMesh;
 use crate::progress::Progress;
@@ -89,6 +89,7 @@ pub fn distances(
     (exact, options): (&ExactOptions, &FieldOptions),
     progress: &Progress,
 ) -> Result<GpuField, GpuError> {
+    device.check_can(GpuMethod::Scatter)?;
     let cost = exact::cost(mesh, lattice, exact.band);
     let limits = options.limits.of(device);
     let staging = 4 * cost.voxels.min(2 * BRICK_VOXELS as u64 * limits.bricks);

@@ -61,7 +61,7 @@ fn what_moves_is_counted_and_passes_are_timed_where_the_adapter_can() {
     let mesh = shapes::torus(24, 12);
     let lattice = stages::lattice_of(&mesh, 32);
     for (method, passes) in
-        [(GpuMethod::Scatter, &["count", "scan", "scatter", "set up"][..]), (GpuMethod::Peel, &["peel", "set up"])]
+        [(GpuMethod::Scatter, &["count", "scan", "scatter"][..]), (GpuMethod::Peel, &["peel", "set up"])]
     {
         let (layers, report) = on_gpu(device, &mesh, &lattice, 1, &GpuOptions { timings: true, ..by(method) });
         let crossings: usize = layers.iter().map(|layers| layers.hits.len()).sum();
@@ -70,7 +70,10 @@ fn what_moves_is_counted_and_passes_are_timed_where_the_adapter_can() {
         if device.entry().timestamps {
             let names: Vec<_> = report.passes.iter().map(|pass| pass.pass).collect();
             assert_eq!(names, passes);
-            assert!(report.passes.iter().all(|pass| pass.count >= 13 && pass.seconds > 0.0), "{:?}", report.passes);
+            // A pass for each direction, but for the sums, which are of all at once.
+            let enough = |name: &str, count: usize| count >= if name == "scan" { 1 } else { 13 };
+            let sound = report.passes.iter().all(|pass| enough(pass.pass, pass.count) && pass.seconds > 0.0);
+            assert!(sound && report.sent <= report.seconds, "{report:?}");
         }
         assert_eq!(on_gpu(device, &mesh, &lattice, 1, &by(method)).1.passes, []);
     }
