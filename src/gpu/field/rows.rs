@@ -70,7 +70,7 @@ impl<'a> Placed<'a> {
     /// # Errors
     /// [`GpuError::Far`] where a feature is too far away for the device's integers.
     pub fn new(features: &'a Features, scope: &Scope) -> Result<Self, GpuError> {
-        let far = |at: DVec3| !(at.abs().max_element() < FARTHEST);
+        let far = |at: DVec3| at.is_nan() || at.abs().max_element() >= FARTHEST;
         if features.faces.par_iter().flat_map_iter(|face| face.corners).any(far)
             || features.edges.par_iter().any(|edge| far(edge.start) || far(edge.start + edge.along * edge.length))
         {
