@@ -36,13 +36,15 @@ impl Peel {
 pub(super) struct Scatter {
     pub count: wgpu::ComputePipeline,
     pub scatter: wgpu::ComputePipeline,
+    pub pack: wgpu::ComputePipeline,
     pub scan: Scan,
 }
 
 impl Scatter {
     pub fn new(device: &wgpu::Device) -> Self {
         let pipeline = |entry| shaders::compute(device, shaders::SCATTER, entry, &[]);
-        Self { count: pipeline("count"), scatter: pipeline("scatter"), scan: Scan::new(device) }
+        let pack = shaders::compute(device, shaders::PACK, "pack", &[]);
+        Self { count: pipeline("count"), scatter: pipeline("scatter"), pack, scan: Scan::new(device) }
     }
 }
 

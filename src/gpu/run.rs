@@ -255,3 +255,24 @@ fn words_of(bytes: &[u8], start: u64, words: u64) -> Vec<u32> {
 fn extent(size: [u32; 2]) -> wgpu::Extent3d {
     wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 }
 }
+
+/// The most workgroups along a side.
+const SIDE: u64 = 32768;
+
+/// One pass of so many workgroups.
+pub(super) fn pass(
+    run: &mut Run<'_>,
+    encoder: &mut wgpu::CommandEncoder,
+    name: &'static str,
+    pipeline: &wgpu::ComputePipeline,
+    buffers: &[&wgpu::Buffer],
+    groups: u64,
+) {
+    let resources: Vec<_> = buffers.iter().map(|buffer| buffer.as_entire_binding()).collect();
+    let group = run.bind(&pipeline.get_bind_group_layout(0), &resources);
+    let timestamp_writes = run.clock.compute(name);
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, &group, &[]);
+    pass.dispatch_workgroups(groups.min(SIDE) as u32, groups.div_ceil(SIDE) as u32, 1);
+}

@@ -5,14 +5,16 @@ use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::programs::Scatter;
-use super::run::{Received, Run, Sent, Source};
+use super::run::{Received, Run, Sent, Source, pass};
 use super::scene::{Beam, Chunk, Tile};
 use super::{GpuError, GpuLimits};
 use crate::ldi::Crossed;
 
-/// Rays of one batch, at most: 64 MB, so that the processor has something to do while the next is found.
-const BATCH: u64 = 1 << 24;
+/// Rays of one batch, at most: 16 MB, so that the processor has something to do while the next is found.
+const BATCH: u64 = 1 << 22;
 /// Triangles of a workgroup, as in the shader.
 const WIDTH: u32 = 64;
 /// The most workgroups along a side.
@@ -68,12 +70,37 @@ impl Batch {
 struct OnItsWay {
     batch: Batch,
     sent: Sent,
+    /// Where the crossings of each ray end.
+    ends: wgpu::Buffer,
 }
 
 /// The crossings of a batch, as the device wrote them.
 pub(super) struct Arrived {
     batch: Batch,
     received: Received,
+    /// Where the crossings of each tile begin, and those of one after the last would.
+    starts: Vec<u32>,
+    /// Where those of each ray end, if a ray has more than a byte tells.
+    ends: Option<Vec<u32>>,
+}
+
+impl OnItsWay {
+    /// Takes the batch, after a wait.
+    fn take(self, run: &mut Run<'_>) -> Result<Arc<Arrived>, GpuError> {
+        let Self { batch, sent, ends } = self;
+        let received = run.receive(&sent)?;
+        let ends = match received.words(2).first() {
+            Some(0) | None => None,
+            Some(_) => run.finish(run.encoder(), &[Source::Words(&ends, batch.rays)])?.pop(),
+        };
+        let mut arrived = Arrived { batch, received, starts: vec![0], ends };
+        let sums: Vec<u32> = arrived.batch.places.par_iter().map(|place| arrived.crossings(place)).collect();
+        for sum in sums {
+            let last = arrived.starts.last().copied().unwrap_or(0);
+            arrived.starts.push(last.wrapping_add(sum));
+        }
+        Ok(Arc::new(arrived))
+    }
 }
 
 impl Arrived {
@@ -82,22 +109,44 @@ impl Arrived {
         self.batch.places.iter().map(|place| (place.direction, place.tile.rays()))
     }
 
-    /// The crossings of tile number `n`; `None` where the ends of the rays are not in order.
+    /// How many crossings each ray of a tile has.
+    fn counts(&self, place: &Place) -> &[u8] {
+        let first = place.offset as usize;
+        self.received.bytes(0).get(first..first + place.tile.rays() as usize).unwrap_or_default()
+    }
+
+    /// How many crossings a tile has.
+    fn crossings(&self, place: &Place) -> u32 {
+        match &self.ends {
+            Some(ends) => {
+                let before = (place.offset as usize).checked_sub(1).and_then(|n| ends.get(n)).map_or(0, |&end| end);
+                let last = ends.get((u64::from(place.offset) + place.tile.rays()) as usize - 1);
+                last.map_or(0, |&last| last.wrapping_sub(before))
+            }
+            None => self.counts(place).iter().fold(0, |sum, &count| sum + u32::from(count)),
+        }
+    }
+
+    /// The crossings of tile number `n`; `None` where they are not those that the rays have.
     pub fn crossed(&self, n: usize) -> Option<Crossed<'_>> {
-        let Place { tile, offset, .. } = self.batch.places[n];
-        let word = |bytes: &[u8]| Some(u32::from_le_bytes(bytes.try_into().ok()?));
-        let ends = self.received.bytes(0);
-        let [from, to] = [u64::from(offset), u64::from(offset) + tile.rays()].map(|ray| 4 * ray as usize);
-        let first = if from == 0 { 0 } else { word(ends.get(from - 4..from)?)? };
-        let last = word(ends.get(to - 4..to)?)?;
-        let triangles = self.received.bytes(1).get(4 * first as usize..4 * last as usize)?;
-        Some(Crossed {
-            low: tile.low,
-            size: tile.size,
-            first,
-            ends: words(ends.get(from..to)?),
-            triangles: words(triangles),
-        })
+        let place = &self.batch.places[n];
+        let [first, last] = [self.starts[n], self.starts[n + 1]];
+        let ends = match &self.ends {
+            Some(ends) => {
+                let from = place.offset as usize;
+                Cow::Borrowed(ends.get(from..from + place.tile.rays() as usize)?)
+            }
+            None => {
+                let mut end = first;
+                let next = |&count: &u8| {
+                    end += u32::from(count);
+                    end
+                };
+                self.counts(place).iter().map(next).collect()
+            }
+        };
+        let triangles = words(self.received.bytes(1).get(4 * first as usize..4 * last as usize)?);
+        Some(Crossed { low: place.tile.low, size: place.tile.size, first, ends, triangles })
     }
 }
 
@@ -134,13 +183,13 @@ impl Scatter {
                 continue;
             }
             let sent = pass.scatter(run, &cursor, crossings)?;
-            if let Some(OnItsWay { batch, sent }) = before.replace(OnItsWay { batch, sent }) {
-                take(Arc::new(Arrived { received: run.receive(&sent)?, batch }));
+            if let Some(before) = before.replace(OnItsWay { batch, sent, ends: cursor }) {
+                take(before.take(run)?);
             }
         }
-        if let Some(OnItsWay { batch, sent }) = before {
+        if let Some(last) = before {
             run.device.wait()?;
-            take(Arc::new(Arrived { received: run.receive(&sent)?, batch }));
+            take(last.take(run)?);
         }
         run.device.check()
     }
@@ -186,7 +235,15 @@ impl Pass<'_> {
         let triangles = run.buffer(crossings, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
         let mut encoder = run.encoder();
         self.cover(run, &mut encoder, "scatter", &self.scatter.scatter, &[cursor, &triangles]);
-        run.send(encoder, &[Source::Words(cursor, self.batch.rays), Source::Words(&triangles, crossings)])
+        let (usage, bytes) = (wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC, self.batch.rays.div_ceil(4));
+        let (packed, largest) = (run.buffer(bytes, usage), run.buffer(1, usage));
+        let count = run.upload(&[self.batch.rays as u32, 0, 0, 0], wgpu::BufferUsages::UNIFORM);
+        let buffers = [&count, cursor, &packed, &largest];
+        pass(run, &mut encoder, "pack", &self.scatter.pack, &buffers, bytes.div_ceil(WIDTH.into()));
+        run.send(
+            encoder,
+            &[Source::Words(&packed, bytes), Source::Words(&triangles, crossings), Source::Words(&largest, 1)],
+        )
     }
 
     /// All triangles in all tiles.

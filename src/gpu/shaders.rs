@@ -14,6 +14,8 @@ pub(super) const SETUP: &[&str] = &[WIDE, TRIANGLE, include_str!("../../shaders/
 pub(super) const PEEL: &[&str] = &[WIDE, TRIANGLE, DRAW, include_str!("../../shaders/peel.wgsl")];
 /// Counting and scattering crossings.
 pub(super) const SCATTER: &[&str] = &[WIDE, TRIANGLE, include_str!("../../shaders/scatter.wgsl")];
+/// Numbers of crossings as bytes.
+pub(super) const PACK: &[&str] = &[include_str!("../../shaders/scatter_pack.wgsl")];
 /// Sorting features into the blocks of a region.
 pub(super) const ENLIST: &[&str] = &[WIDE, FEATURE, include_str!("../../shaders/field_enlist.wgsl")];
 /// Blocks that have any feature, close together.
@@ -124,7 +126,7 @@ mod tests {
     use wgpu::naga;
 
     const ALL: &[&[&str]] =
-        &[SETUP, PEEL, SCATTER, ENLIST, OPEN, MARK, JUDGE, SHARE, MEASURE, COLLECT, SCAN, CHECK_WIDE];
+        &[SETUP, PEEL, SCATTER, PACK, ENLIST, OPEN, MARK, JUDGE, SHARE, MEASURE, COLLECT, SCAN, CHECK_WIDE];
 
     #[test]
     fn every_shader_is_valid() {

@@ -6,11 +6,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::IVec3;
 use rayon::prelude::*;
 
-use super::levels::{BLOCK_WORDS, Descent, Level, pass};
+use super::levels::{BLOCK_WORDS, Descent, Level};
 use super::rows::Picked;
 use crate::gpu::GpuError;
 use crate::gpu::programs::Field;
-use crate::gpu::run::{Received, Run, Sent, Source};
+use crate::gpu::run::{Received, Run, Sent, Source, pass};
 use crate::lattice::{BRICK, BRICK_VOXELS, index_in_brick, voxel_in_brick};
 use crate::sdf::exact::{Features, Filled};
 

@@ -7,7 +7,7 @@ use super::region::Region;
 use super::rows::{Picked, Placed};
 use crate::gpu::GpuError;
 use crate::gpu::programs::Field;
-use crate::gpu::run::{Run, Source};
+use crate::gpu::run::{Run, Source, pass};
 use crate::lattice::BRICK;
 use crate::sdf::exact::Scope;
 
@@ -17,8 +17,6 @@ pub(super) const BLOCK_WORDS: u64 = 5;
 const MOST_SUMS: u64 = 1 << 26;
 /// Invocations of a workgroup, as in the shaders.
 const WIDTH: u64 = 64;
-/// The most workgroups along a side.
-const SIDE: u64 = 32768;
 
 /// Some features on the device.
 pub(super) struct Loaded {
@@ -244,22 +242,4 @@ fn totals(
     let read = run.finish(encoder, &[Source::Words(first, 1), Source::Words(second, 1)])?;
     let word = |n: usize| read.get(n).and_then(|words| words.first()).map_or(0, |&word| u64::from(word));
     Ok([word(0), word(1)])
-}
-
-/// One pass of so many workgroups.
-pub(super) fn pass(
-    run: &mut Run<'_>,
-    encoder: &mut wgpu::CommandEncoder,
-    name: &'static str,
-    pipeline: &wgpu::ComputePipeline,
-    buffers: &[&wgpu::Buffer],
-    groups: u64,
-) {
-    let resources: Vec<_> = buffers.iter().map(|buffer| buffer.as_entire_binding()).collect();
-    let group = run.bind(&pipeline.get_bind_group_layout(0), &resources);
-    let timestamp_writes = run.clock.compute(name);
-    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, &group, &[]);
-    pass.dispatch_workgroups(groups.min(SIDE) as u32, groups.div_ceil(SIDE) as u32, 1);
 }

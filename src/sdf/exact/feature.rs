@@ -111,14 +111,13 @@ impl Features {
         let positions: Vec<DVec3> = mesh.positions.par_iter().map(|&p| lattice.to_lattice(p)).collect();
         let faces: Vec<Option<FaceFeature>> =
             triangles.par_iter().map(|t| face(t.map(|v| positions[v as usize]))).collect();
-        let mut raw = Vec::with_capacity(3 * triangles.len() / 2);
-        all_edges.each(|edge| raw.push(RawEdge::new(&edge, &faces)));
+        let raw = all_edges.map(|edge| RawEdge::new(&edge, &faces));
         let (edges, ends): (Vec<Option<EdgeFeature>>, Vec<Option<End>>) =
             raw.par_iter().map(|raw| raw.edge(&positions, &faces, normals, reach)).unzip();
-        let edges = edges.into_iter().flatten().collect();
-        let ends: Vec<End> = ends.into_iter().flatten().collect();
+        let edges = edges.into_par_iter().flatten_iter().collect();
+        let ends: Vec<End> = ends.into_par_iter().flatten_iter().collect();
         let vertices = vertices(&triangles, &positions, normals, &ends);
-        Self { faces: faces.into_iter().flatten().collect(), edges, vertices }
+        Self { faces: faces.into_par_iter().flatten_iter().collect(), edges, vertices }
     }
 
     /// The signed distance of `p` in h from the nearest of some features, given by their numbers.
