@@ -38,7 +38,7 @@ impl Lists {
 }
 
 /// One brick that has voxels in the band.
-pub(in crate::sdf) struct Filled {
+pub(crate) struct Filled {
     pub brick: IVec3,
     /// Signed distances in h; infinite beyond the band.
     pub values: Box<[f32; BRICK_VOXELS]>,

@@ -8,7 +8,7 @@ use super::feature::{EdgeFeature, FaceFeature, Features, VertexFeature};
 use crate::progress::{Progress, Stopped};
 
 /// Regions are larger by this, in h.
-pub(in crate::sdf) const MARGIN: f64 = 1e-3;
+pub(crate) const MARGIN: f64 = 1e-3;
 /// Where faces bend less than by this sine, rounding may turn the direction in which they do.
 const SLIGHT: f64 = 1e-6;
 /// Features that one task sorts into blocks.
@@ -18,7 +18,7 @@ const MOST_BLOCKS: i32 = 128;
 
 /// The lattice in voxels, and the width of the band.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::sdf) struct Scope {
+pub(crate) struct Scope {
     /// The voxels after the last.
     pub end: IVec3,
     /// In h; finite.
@@ -48,7 +48,7 @@ impl Block {
 }
 
 /// What a feature is to a block.
-pub(in crate::sdf) struct Seen {
+pub(crate) struct Seen {
     /// A lower bound of its distance from the centre, h.
     least: f64,
     /// Its distance from the centre where it is certain, else infinite.
@@ -56,7 +56,7 @@ pub(in crate::sdf) struct Seen {
 }
 
 /// A feature whose region may meet a block.
-pub(in crate::sdf) trait Region: Sync {
+pub(crate) trait Region: Sync {
     /// What it is to the block of half-width `half` around `centre`; `None` where its region lies outside.
     fn seen(&self, centre: DVec3, half: f64) -> Option<Seen>;
     /// The box around the part of the region within `band`.
