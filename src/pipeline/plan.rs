@@ -188,7 +188,7 @@ pub(super) fn check_limits(
     let input = Input::of(operands);
     input.check_numbers(lattice)?;
     let Some(allowed) = options.max_memory else { return Ok(()) };
-    check_memory(operands, lattice, allowed, &|input, lattice| input.cost(lattice, options, offsets).memory)
+    check_memory(operands, lattice, allowed, 1.0, &|input, lattice, _| input.cost(lattice, options, offsets).memory)
 }
 
 /// An error when rays, and the making of a share of the surface (0 to 1), most of which stays as it is, would need more memory than allowed, or more than 32 bits to number things.
@@ -200,25 +200,26 @@ pub(super) fn check_share(
 ) -> Result<(), LimitError> {
     Input::of(operands).check_numbers(lattice)?;
     let Some(allowed) = options.max_memory else { return Ok(()) };
-    check_memory(operands, lattice, allowed, &|input, lattice| {
+    check_memory(operands, lattice, allowed, share, &|input, lattice, share| {
         let (survey, all) = (input.memory(&SURVEYED, lattice, 0.0), input.memory(input.rates(options), lattice, 0.0));
         (survey + share * (all - survey).max(0.0)) as u64
     })
 }
 
-/// An error when `cost`, bytes, is more than allowed.
+/// An error when `cost`, bytes, for a share of the surface is more than allowed.
 fn check_memory(
     operands: &[&TriMesh],
     lattice: &Lattice,
     allowed: u64,
-    cost: &dyn Fn(&Input, &Lattice) -> u64,
+    share: f64,
+    cost: &dyn Fn(&Input, &Lattice, f64) -> u64,
 ) -> Result<(), LimitError> {
     // Most runs are allowed more than the worst surface of this size needs, and nothing is to be looked at.
-    if cost(&Input::of(operands), lattice) <= allowed {
+    if cost(&Input::of(operands), lattice, share) <= allowed {
         return Ok(());
     }
     let input = Input::surveyed(operands);
-    let needed = cost(&input, lattice);
+    let needed = cost(&input, lattice, share);
     if needed <= allowed {
         return Ok(());
     }
@@ -226,7 +227,8 @@ fn check_memory(
     let fits = |bounds: &Bounds| {
         let coarser = std::iter::successors(Some(1.1 * lattice.h), |h| Some(1.1 * h));
         let mut possible = coarser.take_while(|h| h / 1.1 < bounds.size().max_element());
-        possible.find(|&h| cost(&input, &Lattice::around(bounds, h)) <= allowed)
+        // What is advised fits whatever share of the surface is made.
+        possible.find(|&h| cost(&input, &Lattice::around(bounds, h), 1.0) <= allowed)
     };
     Err(LimitError::Memory { needed, allowed, voxel_that_fits: bounds.as_ref().and_then(fits) })
 }
