@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::{Ball, Extent, Field, Range, Sample, Shared};
+use crate::lattice::Lattice;
 use crate::mesh::Bounds;
 
 /// A similarity: turned about the origin, made larger, then moved.
@@ -84,6 +85,17 @@ impl Field for Placed {
     fn range(&self, ball: &Ball) -> Range {
         let (centre, radius) = (self.placement.back(ball.centre), ball.radius / self.placement.scale);
         self.field.range(&Ball { centre, radius }).times(self.placement.scale)
+    }
+
+    fn over(&self, lattice: &Lattice) -> Option<Vec<f32>> {
+        // A turned lattice is none.
+        if self.placement.turn != DMat3::IDENTITY {
+            return None;
+        }
+        let (origin, h) = (self.placement.back(lattice.origin), lattice.h / self.placement.scale);
+        let mut values = self.field.over(&Lattice { origin, h, ..*lattice })?;
+        values.iter_mut().for_each(|value| *value = (f64::from(*value) * self.placement.scale) as f32);
+        Some(values)
     }
 
     fn lipschitz(&self) -> f64 {
