@@ -233,7 +233,8 @@ impl Filtered {
             .iter()
             .map(|&p| stored.sample(p, recent).filter(|sample| sample.value.abs() > surely && sample.value.is_finite()))
             .collect();
-        let asked: Vec<DVec3> = points.iter().zip(&known).filter(|(_, known)| known.is_none()).map(|(&p, _)| p).collect();
+        let asked: Vec<DVec3> =
+            points.iter().zip(&known).filter(|(_, known)| known.is_none()).map(|(&p, _)| p).collect();
         let mut found = ask(&asked).into_iter();
         known.into_iter().map(|known| known.or_else(|| found.next()).unwrap_or_default()).collect()
     }

@@ -80,7 +80,14 @@ impl FilterOptions {
     /// interpolated.
     pub fn new(cap: f64) -> Self {
         let sampling = Sampling::Drawn { count: 64, seed: 0, mirrored: true };
-        Self { cap, kernel: Kernel::Bump { width: WIDEST * cap }, sampling, adaptive: None, sign_safe: false, distances: Distances::default() }
+        Self {
+            cap,
+            kernel: Kernel::Bump { width: WIDEST * cap },
+            sampling,
+            adaptive: None,
+            sign_safe: false,
+            distances: Distances::default(),
+        }
     }
 }
 

@@ -123,7 +123,8 @@ pub(super) fn filter(call: &Call<Value>, field: &Shared) -> Result<Shared> {
     let adaptive = call.count("least").map(|least| Adaptive { least: least as usize });
     let distances = call.count("cells").map_or_else(Distances::default, |cells| Distances::interpolated(cells as u32));
     // A Gaussian has no end: its sign is put back.
-    let options = FilterOptions { cap, kernel, sampling: sampling(call), adaptive, sign_safe: sigma.is_some(), distances };
+    let options =
+        FilterOptions { cap, kernel, sampling: sampling(call), adaptive, sign_safe: sigma.is_some(), distances };
     Ok(filtered(field.clone(), &options)?)
 }
 
