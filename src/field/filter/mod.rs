@@ -52,7 +52,7 @@ pub enum Distances {
     /// field has a quick way to tell them there ([`Field::over`](super::Field::over)); nearer, and where it has none, it is
     /// asked for each sample, so that the surface stays where it is.
     Interpolated {
-        /// Cells along the cap, at least 1. With 16 the filtered value is within a thousandth of the cap of that by
+        /// Cells along the cap, at least 1. With 24 the filtered value is within a thousandth of the cap of that by
         /// [`Distances::Asked`] (docs/accuracy.md); twice as many quarter the error.
         cells: u32,
         /// Bytes of memory for the values. Where they do not suffice, values are found again: that takes time and changes
@@ -62,9 +62,9 @@ pub enum Distances {
 }
 
 impl Default for Distances {
-    /// 16 cells and 256 MiB.
+    /// 24 cells and 256 MiB.
     fn default() -> Self {
-        Self::interpolated(16)
+        Self::interpolated(24)
     }
 }
 

@@ -100,7 +100,7 @@ pub static FUNCTIONS: &[&Function] = &[
         Parameter { name: "sigma", kind: Kind::Length, presence: Presence::InsteadOf("width") },
         SAMPLES,
         optional("least", Kind::Count(2, 65_536)),
-        default("cells", Kind::Count(0, 1024), Preset::Quantity(16.0, "")),
+        default("cells", Kind::Count(0, 1024), Preset::Quantity(24.0, "")),
     ]),
     &of(
         "smooth",

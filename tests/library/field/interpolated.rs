@@ -70,7 +70,7 @@ fn neither_threads_nor_memory_nor_what_was_asked_before_change_a_value() {
     let once = values(Distances::default(), 1, false);
     assert_eq!(once, values(Distances::default(), 2, true));
     for memory in [0, 64 * 120_000] {
-        assert_eq!(once, values(Distances::Interpolated { cells: 16, memory }, 2, false), "{memory}");
+        assert_eq!(once, values(Distances::Interpolated { cells: 24, memory }, 2, false), "{memory}");
     }
 }
 
