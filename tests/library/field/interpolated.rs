@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, IVec3};
 use meshwright::field::filter::{Distances, FilterError, FilterOptions, Sampling, filtered};
-use meshwright::field::{Field, MeshField, Placement, Shared, placed, scattered};
+use meshwright::field::{MeshField, Placement, Shared, placed, scattered};
 use meshwright::lattice::Lattice;
 use meshwright::mesh::{Bounds, TriMesh};
 use meshwright::sdf::exact::PointSign;
