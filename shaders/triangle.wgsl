@@ -16,6 +16,8 @@ struct View {
     /// Number of the chunk's first triangle, and how many there are.
     first: u32,
     count: u32,
+    /// Number of the tile's first ray among those of all tiles that are worked on together.
+    offset: u32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;

@@ -23,6 +23,11 @@ fn wide_difference(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
     return vec2(a.x - b.x, a.y - b.y - select(0u, 1u, a.x < b.x));
 }
 
+fn wide_sum(a: vec2<u32>, b: vec2<u32>) -> vec2<u32> {
+    let low = a.x + b.x;
+    return vec2(low, a.y + b.y + select(0u, 1u, low < a.x));
+}
+
 fn wide_is_negative(a: vec2<u32>) -> bool {
     return bitcast<i32>(a.y) < 0;
 }

@@ -1,4 +1,4 @@
-//! Which processor casts the rays and makes the fields of prisms: the results are the same to the last bit.
+//! Which processor casts the rays, the same to the last bit by either, and which makes exact fields, the same but for rounding.
 
 use serde::Serialize;
 
@@ -6,15 +6,15 @@ use crate::lattice::{DistanceField, Lattice};
 use crate::ldi::{Layers, ldis};
 use crate::mesh::TriMesh;
 use crate::progress::{Progress, Stopped};
-use crate::sdf;
-use crate::sdf::exact::{ExactError, ExactOptions};
+use crate::sdf::exact::{self, ExactError, ExactOptions, Sign};
 
-/// Which processor makes the layered depth images, the same to the last bit, or the field of prisms.
+/// Which processor makes the layered depth images, the same to the last bit, or an exact field, the same but for rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Backend {
-    /// The graphics processor where there is a real one and the job is large enough to pay, else the main one.
+    /// For layered depth images the graphics processor where there is a real one and the job is large enough to pay, else the main one; for fields always the
+    /// main one, so that they are the same bytes on every machine.
     #[default]
     Auto,
     /// The main processor.
@@ -36,6 +36,9 @@ pub struct BackendReport {
     pub bytes_up: u64,
     /// Bytes read back from it.
     pub bytes_down: u64,
+    /// Voxels of a field that the main processor measured again, since single precision did not tell their side.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub doubtful: Option<u64>,
     /// Why the main processor did it after all, though a graphics adapter was to.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fallback: Option<String>,
@@ -78,31 +81,24 @@ pub(crate) fn layers(
     Ok((layers, BackendReport { backend: Backend::Cpu, fallback, ..BackendReport::default() }))
 }
 
-/// The field of [`crate::sdf::prism::prism`] by the processor that `backend` says; a real graphics processor is taken where
-/// there is one, since it does all but sorting the slices.
-pub(crate) fn prism(
+/// The field of [`exact::exact`] by the processor that `backend` says.
+pub(crate) fn exact(
     mesh: &TriMesh,
     lattice: &Lattice,
+    sign: Sign<'_>,
     options: &ExactOptions,
     backend: Backend,
     progress: &Progress,
-) -> Result<(DistanceField, BackendReport), PrismError> {
-    let fallback = match backend {
-        Backend::Cpu => None,
-        Backend::Gpu => return gpu::prism(mesh, lattice, options, progress),
-        Backend::Auto => match gpu::prism_if_real(mesh, lattice, options, progress) {
-            Ok(Some(made)) => return Ok(made),
-            Ok(None) => None,
-            Err(PrismError::Gpu { reason, .. }) => Some(reason),
-            Err(error) => return Err(error),
-        },
-    };
-    let field = sdf::prism::prism(mesh, lattice, options, progress).map_err(PrismError::Field)?;
-    Ok((field, BackendReport { backend: Backend::Cpu, fallback, ..BackendReport::default() }))
+) -> Result<(DistanceField, BackendReport), FieldError> {
+    if backend == Backend::Gpu {
+        return gpu::exact(mesh, lattice, sign, options, progress);
+    }
+    let field = exact::exact(mesh, lattice, sign, options, progress).map_err(FieldError::Field)?;
+    Ok((field, BackendReport { backend: Backend::Cpu, ..BackendReport::default() }))
 }
 
 /// Why there is no field.
-pub(crate) enum PrismError {
+pub(crate) enum FieldError {
     /// Neither processor could.
     Field(ExactError),
     /// The graphics processor could not.
@@ -112,7 +108,7 @@ pub(crate) enum PrismError {
 #[cfg(feature = "gpu")]
 mod gpu {
     use super::*;
-    use crate::gpu::{self, AdapterKind, Device, GpuError, GpuOptions, GpuReport, Wanted};
+    use crate::gpu::{self, AdapterKind, Device, FieldOptions, GpuError, GpuOptions, GpuReport, Wanted};
 
     type Made = (Vec<Layers>, BackendReport);
 
@@ -164,46 +160,25 @@ mod gpu {
         Ok((layers, report))
     }
 
-    pub fn prism(
+    pub fn exact(
         mesh: &TriMesh,
         lattice: &Lattice,
+        sign: Sign<'_>,
         options: &ExactOptions,
         progress: &Progress,
-    ) -> Result<(DistanceField, BackendReport), PrismError> {
+    ) -> Result<(DistanceField, BackendReport), FieldError> {
         let device = Device::open(&Wanted::Any).map_err(refused)?;
-        prism_on(&device, mesh, lattice, options, progress)
+        let of_device = (options, &FieldOptions::default());
+        let made = gpu::distances(&device, mesh, lattice, sign, of_device, progress).map_err(refused)?;
+        let report = BackendReport { doubtful: Some(made.doubtful), ..made_by(&device, &made.report) };
+        Ok((made.field, report))
     }
 
-    /// On a real graphics processor, if there is one.
-    pub fn prism_if_real(
-        mesh: &TriMesh,
-        lattice: &Lattice,
-        options: &ExactOptions,
-        progress: &Progress,
-    ) -> Result<Option<(DistanceField, BackendReport)>, PrismError> {
-        match Device::open(&Wanted::Hardware) {
-            Ok(device) => prism_on(&device, mesh, lattice, options, progress).map(Some),
-            Err(GpuError::NoAdapter { .. }) => Ok(None),
-            Err(error) => Err(refused(error)),
-        }
-    }
-
-    fn prism_on(
-        device: &Device,
-        mesh: &TriMesh,
-        lattice: &Lattice,
-        options: &ExactOptions,
-        progress: &Progress,
-    ) -> Result<(DistanceField, BackendReport), PrismError> {
-        let (field, report) = gpu::prism(device, mesh, lattice, options, false, progress).map_err(refused)?;
-        Ok((field, made_by(device, &report)))
-    }
-
-    fn refused(error: GpuError) -> PrismError {
+    fn refused(error: GpuError) -> FieldError {
         match error {
-            GpuError::Stopped(stopped) => PrismError::Field(stopped.into()),
-            GpuError::Field(error) => PrismError::Field(error),
-            error => PrismError::Gpu { reason: error.to_string(), hint: error.hint().into() },
+            GpuError::Stopped(stopped) => FieldError::Field(stopped.into()),
+            GpuError::Field(error) => FieldError::Field(error),
+            error => FieldError::Gpu { reason: error.to_string(), hint: error.hint().into() },
         }
     }
 
@@ -215,6 +190,7 @@ mod gpu {
             adapter: Some(format!("{}{software}", entry.name)),
             bytes_up: report.bytes_up,
             bytes_down: report.bytes_down,
+            doubtful: None,
             fallback: None,
         }
     }
@@ -285,21 +261,13 @@ mod gpu {
         Ok(None)
     }
 
-    pub fn prism(
+    pub fn exact(
         _: &TriMesh,
         _: &Lattice,
+        _: Sign<'_>,
         _: &ExactOptions,
         _: &Progress,
-    ) -> Result<(DistanceField, BackendReport), PrismError> {
-        Err(PrismError::Gpu { reason: "this build has no graphics backend".into(), hint: "--backend cpu".into() })
-    }
-
-    pub fn prism_if_real(
-        _: &TriMesh,
-        _: &Lattice,
-        _: &ExactOptions,
-        _: &Progress,
-    ) -> Result<Option<(DistanceField, BackendReport)>, PrismError> {
-        Ok(None)
+    ) -> Result<(DistanceField, BackendReport), FieldError> {
+        Err(FieldError::Gpu { reason: "this build has no graphics backend".into(), hint: "--backend cpu".into() })
     }
 }

@@ -2,7 +2,7 @@
 """The exact distance field against OpenVDB's meshToVolume (time, values) and libigl's pseudonormal distance (values).
 
     tools/distance_peers.py PROGRAM [--runs 3] [--only WORD] [--no-values] [--no-openvdb]
-                            [--methods characteristics,prism@cpu,prism@gpu]
+                            [--methods characteristics,prism,exact@gpu]
 
 Needs numpy, libigl and, for OpenVDB, g++ with libopenvdb-dev and libboost-dev; without these its columns are left out.
 Rows are those of Sigg et al. 2003, Tables 1 to 4. Both programs run on all cores, one after the other, and the

@@ -124,7 +124,7 @@ pub enum MethodChoice {
     Exact,
     /// The same for closed surfaces, by a polyhedron for every face, edge and vertex: a reference to compare with
     Characteristics,
-    /// The same for closed surfaces, slice by slice from a prism for every triangle, drawn on either processor
+    /// The same for closed surfaces, slice by slice from a prism for every triangle
     Prism,
     /// The field that repairs are made from: smooth where the surface is broken, extended by fast marching
     Robust,

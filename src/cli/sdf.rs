@@ -5,6 +5,7 @@ use std::path::Path;
 use clap::ValueEnum;
 use serde_json::json;
 
+use super::backend::BackendChoice;
 use super::choices::{InsideChoice, SignChoice};
 use super::entries::OutputEntry;
 use super::epilogue;
@@ -54,8 +55,6 @@ pub fn run(args: &SdfArgs, session: &Session, report: &mut RunReport) -> Result<
         .map_err(|e| failure(&e, input, &options, unit, args))?;
     report.stages.append(&mut outcome.report.stages);
     let output = Some(write(path, &outcome, unit, format, session, report)?);
-    let fallback = outcome.report.made_by.as_ref().and_then(|made_by| made_by.fallback.as_ref());
-    report.warnings.extend(fallback.map(|reason| format!("the main processor drew the slices: {reason}")));
     report.result = Some(RunResult::Distance { distance: outcome.report.clone(), output });
     let exit = epilogue::measured(session, report, args.max_memory);
     say(session, report, &outcome.report, &options, unit);
@@ -96,6 +95,12 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
     let method = args.method.into();
     let closed = DistanceMethod::is_for_closed(method);
     backend::check_built(args.backend)?;
+    if args.backend == BackendChoice::Gpu && method != DistanceMethod::Exact {
+        return Err(Failure::usage(
+            "a graphics processor measures --method exact only; --backend gpu cannot change that",
+        )
+        .hint("--method exact --backend gpu, or this method without --backend"));
+    }
     if closed {
         pseudonormals_only(args)?;
     }
@@ -315,7 +320,9 @@ fn say(
     };
     rows.push(("done", format!("{how} {reach}; {side}")));
     if let Some(made_by) = distance.made_by.as_ref().filter(|made_by| made_by.adapter.is_some()) {
-        rows.push(("done", format!("slices {}", backend::words(made_by, "drawn"))));
+        let doubtful = made_by.doubtful.unwrap_or(0) as usize;
+        let again = format!("{} again by the main processor", words::plural(doubtful, "voxel"));
+        rows.push(("done", format!("{}; {again}", backend::words(made_by, "measured"))));
     }
     rows.push(("voxel", summary::voxel(distance.voxel, distance.dims, unit)));
     if let Some(output) = report.output() {

@@ -28,7 +28,7 @@ pub struct SdfArgs {
     /// How the distance is found
     #[arg(long, value_enum, default_value_t = MethodChoice::Exact)]
     pub method: MethodChoice,
-    /// Which processor draws the slices of --method prism
+    /// Which processor measures: `auto` is the main one; `gpu` a graphics adapter, for --method exact, the same but for rounding
     #[arg(long, value_enum, default_value_t = BackendChoice::Auto)]
     pub backend: BackendChoice,
     /// What tells inside from outside [default: pseudonormal for a valid solid, else votes]

@@ -1,22 +1,18 @@
 //! The distance to a mesh as a field.
 
 use std::cell::RefCell;
+use std::sync::Arc;
 
 use glam::{DVec3, IVec3};
 
-use super::{Ball, Extent, Field, Range, Sample, SourceTriangle};
-use crate::lattice::Lattice;
+use super::{Ball, Cubes, Extent, Field, Range, Sample, SourceTriangle};
 use crate::mesh::{Bounds, TriMesh};
-use crate::progress::Progress;
-use crate::sdf::exact::{Band, ExactDistance, ExactOptions, Nearest, PointSign, Sign, exact};
+use crate::sdf::exact::{BlockDistance, ExactDistance, Nearest, PointSign};
 
 thread_local! {
     /// Room for the nearest points of a packet.
     static NEAREST: RefCell<Vec<Nearest>> = const { RefCell::new(Vec::new()) };
 }
-
-/// More than rounding adds to a distance, over it.
-const ROUNDING: f64 = 1e-9;
 
 /// The exact signed distance to a mesh.
 pub struct MeshField {
@@ -34,34 +30,25 @@ impl MeshField {
         Self { distance: ExactDistance::of(mesh, sign), bounds: mesh.bounds(), source, mesh: kept }
     }
 
-    /// The triangles that may be nearest to a point of a ball, with their vertices: around a feature that may be, there are all
-    /// of them.
-    fn around(mesh: &TriMesh, centre: DVec3, within: f64) -> TriMesh {
-        let mut numbers = vec![u32::MAX; mesh.positions.len()];
-        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
-        for triangle in &mesh.triangles {
-            let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
-            let nearest = centre.clamp(a.min(b).min(c), a.max(b).max(c));
-            if nearest.distance_squared(centre) > within * within {
-                continue;
-            }
-            triangles.push(triangle.map(|v| {
-                let number = &mut numbers[v as usize];
-                if *number == u32::MAX {
-                    *number = positions.len() as u32;
-                    positions.push(mesh.positions[v as usize]);
-                }
-                *number
-            }));
-        }
-        TriMesh { positions, triangles }
-    }
-
     fn each(&self, points: &[DVec3], mut take: impl FnMut(usize, Option<&Nearest>)) {
         NEAREST.with_borrow_mut(|nearest| {
             self.distance.packet(points, nearest);
             (0..points.len()).for_each(|k| take(k, nearest.get(k)));
         });
+    }
+}
+
+/// The distance to a mesh over a lattice of spacing `h`, model units.
+struct MeshCubes {
+    distance: BlockDistance,
+    h: f64,
+}
+
+impl Cubes for MeshCubes {
+    fn cube(&self, cube: IVec3) -> Option<Vec<f32>> {
+        let mut values = self.distance.cube(cube)?;
+        values.iter_mut().for_each(|value| *value = (f64::from(*value) * self.h) as f32);
+        Some(values)
     }
 }
 
@@ -80,20 +67,9 @@ impl Field for MeshField {
         Range::around(self.value(ball.centre), ball.radius)
     }
 
-    fn over(&self, lattice: &Lattice) -> Option<Vec<f32>> {
-        let mesh = self.mesh.as_ref()?;
-        let last = (lattice.dims - 1).as_dvec3();
-        let (centre, radius) = (lattice.to_model(last / 2.0), last.length() / 2.0 * lattice.h);
-        // A point of the lattice is as far as its centre is and its radius at most, from there once more.
-        let within = self.value(centre).abs() + 2.0 * (radius + lattice.h);
-        let near = Self::around(mesh, centre, within * (1.0 + ROUNDING));
-        let options = ExactOptions { band: Band::Full, max_memory: None };
-        let found = exact(&near, lattice, Sign::Pseudonormal, &options, &Progress::none()).ok()?.into_model_units();
-        let dims = lattice.dims;
-        let voxels = (0..dims.element_product())
-            .map(|n| IVec3::new(n % dims.x, n / dims.x % dims.y, n / dims.x / dims.y))
-            .map(|voxel| found.grid.get(voxel));
-        Some(voxels.collect())
+    fn over(&self, origin: DVec3, h: f64) -> Option<Arc<dyn Cubes>> {
+        let distance = BlockDistance::of(self.mesh.as_ref()?, origin, h)?;
+        Some(Arc::new(MeshCubes { distance, h }))
     }
 
     fn lipschitz(&self) -> f64 {

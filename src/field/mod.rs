@@ -10,7 +10,7 @@
 //!
 //! ```
 //! use std::sync::Arc;
-//! use glam::DVec3;
+//! use glam::{DVec3, IVec3};
 //! use meshwright::field::{Body, Field, Shared, Solid, algebra, blend};
 //!
 //! let ball = |x| -> Shared {
@@ -41,7 +41,7 @@ use std::sync::Arc;
 
 pub use combined::{Combined, Rule, Slope};
 pub use fill::{FillError, FillOptions, fill};
-use glam::DVec3;
+use glam::{DVec3, IVec3};
 pub use level::{Level, LevelError, level};
 pub use material::material;
 pub use mesh::MeshField;
@@ -51,7 +51,12 @@ pub use range::{Ball, Extent, Range};
 pub use sampled::{Sampled, blur_band, blurred};
 pub use solids::{Body, Solid};
 
-use crate::lattice::Lattice;
+/// The values of a field over a lattice without an end.
+pub trait Cubes: Send + Sync {
+    /// The values, model units, at the 32³ points from `29 cube - 1` on, lattice coordinates, x fastest, then y; they may be off by 1e-3 of the spacing. `None` where they
+    /// are not known. What they are depends on nothing that was asked before.
+    fn cube(&self, cube: IVec3) -> Option<Vec<f32>>;
+}
 
 /// A field that others can be made of.
 pub type Shared = Arc<dyn Field>;
@@ -100,10 +105,9 @@ pub trait Field: Send + Sync {
         None
     }
 
-    /// The values at all points of a lattice, model units, x fastest, then y, if there is a way that is much quicker than
-    /// [`Self::values`]; they may be off by 1e-3 of its spacing. What they are does not depend on threads.
-    fn over(&self, lattice: &Lattice) -> Option<Vec<f32>> {
-        let _ = lattice;
+    /// A way to tell the values at the points `origin + h v`, model units, cube by cube, if there is one that is much quicker than [`Self::values`].
+    fn over(&self, origin: DVec3, h: f64) -> Option<Arc<dyn Cubes>> {
+        let _ = (origin, h);
         None
     }
 

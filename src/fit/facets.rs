@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::contour::Ground;
 use crate::mesh::around::Around;
 use crate::mesh::neighbours::Neighbours;
-use crate::mesh::{Bounds, Plane, TriMesh};
+use crate::mesh::{Plane, TriMesh};
 
 /// Planes that turn by less (cosine, 20°) belong to one smooth piece.
 pub(super) const SMOOTH: f64 = 0.94;
@@ -109,8 +109,11 @@ pub struct Facets<'a> {
     /// How far a point is from the surface that is wanted, model units, where that is known.
     target: Option<TargetDistance<'a>>,
     /// Where the surface that is wanted is, model units, if the contour was cut off around that.
-    window: Option<Bounds>,
+    beyond: Option<Beyond<'a>>,
 }
+
+/// Whether a point (model units) is beyond the part of space that a contour was made for.
+pub type Beyond<'a> = &'a (dyn Fn(DVec3) -> bool + Sync);
 
 /// The target distance: how far a point (model units) is from the surface that is wanted, in model units.
 pub type TargetDistance<'a> = &'a (dyn Fn(DVec3) -> f64 + Sync);
@@ -133,7 +136,7 @@ impl<'a> Facets<'a> {
             around: Around::new(mesh),
             classes: Vec::new(),
             target: None,
-            window: None,
+            beyond: None,
         }
     }
 
@@ -144,16 +147,21 @@ impl<'a> Facets<'a> {
         self
     }
 
-    /// The same facets for a contour that was cut off around a window, model units, and closed along the cut: beyond the window all of the
-    /// surface that is wanted are triangles that are kept.
-    pub fn with_window(mut self, window: Option<Bounds>) -> Self {
-        self.window = window;
+    /// The same facets for a contour that was made for a part of space only and closed along its border: where a point (model units) is beyond
+    /// that part, all of the surface that is wanted are triangles that are kept.
+    pub fn with_beyond(mut self, beyond: Option<Beyond<'a>>) -> Self {
+        self.beyond = beyond;
         self
     }
 
-    /// Whether a point of the contour is beyond the window, where it is not wanted.
+    /// Whether the contour was made for a part of space only.
+    pub(super) fn has_beyond(&self) -> bool {
+        self.beyond.is_some()
+    }
+
+    /// Whether a point of the contour is where it is not wanted.
     pub(super) fn is_beyond(&self, p: DVec3) -> bool {
-        self.window.as_ref().is_some_and(|w| (p.cmplt(w.min) | p.cmpgt(w.max)).any())
+        self.beyond.is_some_and(|beyond| beyond(p))
     }
 
     /// The same facets with a judge of creases. Planes that touch something round meet beside it, and a crease there would be
@@ -176,11 +184,6 @@ impl<'a> Facets<'a> {
     /// The class of a side's triangle, if it has one.
     pub(super) fn class(&self, side: Side) -> Option<u32> {
         self.classes.get(side.facet().index()).copied()
-    }
-
-    /// The source.
-    pub(super) fn mesh(&self) -> &TriMesh {
-        self.mesh
     }
 
     /// The triangles around a vertex of the source.

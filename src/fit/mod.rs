@@ -27,12 +27,12 @@ mod source;
 mod surface;
 mod zone;
 
-pub use facets::{FacetId, Facets, Side, Sides, TargetDistance};
+pub use facets::{Beyond, FacetId, Facets, Side, Sides, TargetDistance};
+pub use keep::{Kept, Seams};
 pub use source::{SimpleSource, simplified_source};
 pub use surface::Surface;
 pub(crate) use surface::rounded;
 
-use crate::ldi::Evidence;
 use crate::progress::{Progress, Stopped};
 use sharpen::Sharp;
 use simplify::Simple;
@@ -80,18 +80,22 @@ pub struct FitReport {
 const WORTH_RETRYING: usize = 100;
 
 /// Fits a surface to its facets: creases and corners come back, and what is flat gets few triangles.
-/// `h` is the voxel spacing, model units. `initial` must be a valid solid with coordinates in `f32`; the result
+/// `kept` are triangles of the source that may take the contour's place; `h` is the voxel spacing, model units. `initial` must be a valid solid with coordinates in `f32`; the result
 /// is one, too, and `initial` itself if nothing else can be.
 pub fn fit(
     initial: &Surface,
     facets: &Facets<'_>,
-    evidence: &Evidence,
+    kept: &Kept,
     h: f64,
     options: &FitOptions,
     progress: &Progress,
 ) -> Result<(Surface, FitReport), Stopped> {
     if !options.rebuild {
-        let (joined, kept) = keep::keep(initial, facets, evidence, h, progress)?;
+        let (joined, kept) = keep::keep(initial, facets, kept, h, progress)?;
+        if kept == 0 && facets.has_beyond() {
+            // A part without the rest is nothing that a fit would help.
+            return Ok((joined, FitReport { of: facets.triangles(), ..FitReport::default() }));
+        }
         if let Some((surface, report)) = refined(&joined, facets, h, options, progress)? {
             return Ok((surface, FitReport { kept, of: facets.triangles(), ..report }));
         }

@@ -58,7 +58,7 @@ pub struct AdapterEntry {
     pub buffer_bytes: u64,
     /// Whether it can peel layers ([`super::GpuMethod::Peel`]).
     pub peel: bool,
-    /// Whether it can scatter crossings ([`super::GpuMethod::Scatter`]).
+    /// Whether it can compute: scatter crossings ([`super::GpuMethod::Scatter`]) and measure distances ([`super::distances`]).
     pub scatter: bool,
     /// Whether it can time its passes.
     pub timestamps: bool,
@@ -152,7 +152,7 @@ fn entry(adapter: &wgpu::Adapter) -> AdapterEntry {
         binding_bytes: limits.max_storage_buffer_binding_size,
         buffer_bytes: limits.max_buffer_size,
         peel: compute && renders(wgpu::TextureFormat::R32Uint) && renders(wgpu::TextureFormat::Depth32Float),
-        scatter: compute && down.contains(wgpu::DownlevelFlags::FRAGMENT_WRITABLE_STORAGE),
+        scatter: down.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS),
         timestamps: adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY),
     }
 }

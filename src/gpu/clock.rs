@@ -70,21 +70,21 @@ impl Clock {
         Some((queries, [2 * n, 2 * n + 1]))
     }
 
-    /// Writes the pending times to a buffer: that, and the number of words in it.
-    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) -> Option<(wgpu::Buffer, u64)> {
+    /// Writes the pending times to a buffer: that, and the names of the passes.
+    pub fn resolve(&mut self, encoder: &mut wgpu::CommandEncoder) -> Option<(wgpu::Buffer, Vec<&'static str>)> {
         let (queries, resolved) = (self.queries.as_ref()?, self.resolved.as_ref()?);
-        let count = 2 * self.pending.len() as u32;
-        if count == 0 {
+        let names = std::mem::take(&mut self.pending);
+        if names.is_empty() {
             return None;
         }
-        encoder.resolve_query_set(queries, 0..count, resolved, 0);
-        Some((resolved.clone(), 2 * u64::from(count)))
+        encoder.resolve_query_set(queries, 0..2 * names.len() as u32, resolved, 0);
+        Some((resolved.clone(), names))
     }
 
-    /// Adds up the times that were resolved.
-    pub fn add(&mut self, words: &[u32]) {
+    /// Adds up times that were resolved: four words a pass.
+    pub fn add(&mut self, names: &[&'static str], words: &[u32]) {
         let tick = |words: &[u32]| u64::from(words[1]) << 32 | u64::from(words[0]);
-        for (name, times) in self.pending.drain(..).zip(words.chunks_exact(4)) {
+        for (&name, times) in names.iter().zip(words.chunks_exact(4)) {
             let ticks = tick(&times[2..]).saturating_sub(tick(&times[..2]));
             let sum = self.sums.entry(name).or_insert(PassTime { pass: name, count: 0, seconds: 0.0 });
             sum.count += 1;

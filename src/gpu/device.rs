@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::adapters::{AdapterEntry, Wanted, wanted};
-use super::programs::{Peel, Scatter, Setup};
+use super::programs::{Field, Peel, Scatter, Setup};
 use super::{GpuError, GpuMethod};
 
 /// An open graphics adapter with the programs of this crate. Opening takes tens of milliseconds, hundreds on some
@@ -19,6 +19,7 @@ pub struct Device {
     setup: OnceLock<Setup>,
     peel: OnceLock<Peel>,
     scatter: OnceLock<Scatter>,
+    field: OnceLock<Field>,
 }
 
 impl Device {
@@ -37,7 +38,16 @@ impl Device {
         let (refused, lost) = (faults.clone(), faults.clone());
         raw.on_uncaptured_error(Arc::new(move |error| refused.note(GpuError::from(error))));
         raw.set_device_lost_callback(move |_, reason| lost.note(GpuError::Lost { reason }));
-        Ok(Self { raw, queue, entry, faults, setup: OnceLock::new(), peel: OnceLock::new(), scatter: OnceLock::new() })
+        Ok(Self {
+            raw,
+            queue,
+            entry,
+            faults,
+            setup: OnceLock::new(),
+            peel: OnceLock::new(),
+            scatter: OnceLock::new(),
+            field: OnceLock::new(),
+        })
     }
 
     /// What is open.
@@ -49,7 +59,7 @@ impl Device {
     pub(super) fn check_can(&self, method: GpuMethod) -> Result<(), GpuError> {
         let (can, lacks) = match method {
             GpuMethod::Peel => (self.entry.peel, "targets of 32-bit integers and depths"),
-            GpuMethod::Scatter => (self.entry.scatter, "buffers that fragments can write"),
+            GpuMethod::Scatter => (self.entry.scatter, "compute shaders"),
         };
         if can { Ok(()) } else { Err(GpuError::Incapable { adapter: self.entry.name.clone(), lacks: lacks.into() }) }
     }
@@ -64,6 +74,10 @@ impl Device {
 
     pub(super) fn scatter(&self) -> &Scatter {
         self.scatter.get_or_init(|| Scatter::new(&self.raw))
+    }
+
+    pub(super) fn field(&self) -> &Field {
+        self.field.get_or_init(|| Field::new(&self.raw))
     }
 
     /// The first thing that has gone wrong since the last look.

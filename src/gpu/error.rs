@@ -44,13 +44,23 @@ pub enum GpuError {
         /// The most that fit.
         most: u64,
     },
-    /// The slices of a lattice are larger than the adapter's textures.
-    #[error("slices of {} x {} voxels are larger than the graphics processor's textures of {most}", size[0], size[1])]
-    Slice {
-        /// Voxels along x and y.
-        size: [u32; 2],
-        /// The most that fit.
-        most: u32,
+    /// A part of the mesh is farther from the lattice than the device's integers reach.
+    #[error(
+        "a part of the mesh is more than {most:.1e} voxels from the lattice, farther than the graphics processor counts"
+    )]
+    Far {
+        /// The farthest that it counts, h.
+        most: f64,
+    },
+    /// The features that can be nearest within one brick are more than the adapter's buffers hold.
+    #[error(
+        "a block of voxels has {features} faces, edges and vertices near it, more than the graphics processor's buffers hold (lists of {most})"
+    )]
+    Crowded {
+        /// Faces, edges and vertices.
+        features: u64,
+        /// Entries of a list.
+        most: u64,
     },
     /// There is no such field.
     #[error(transparent)]
@@ -91,7 +101,7 @@ impl GpuError {
             Self::NoAdapter { present, .. } if present.is_empty() => INSTALL,
             Self::NoAdapter { .. } => "`meshwright devices` lists the adapters that are there",
             Self::Stopped(_) => "more time",
-            Self::Slice { .. } | Self::Field(_) => "a larger voxel, or --backend cpu",
+            Self::Far { .. } | Self::Crowded { .. } | Self::Field(_) => "a larger voxel, or --backend cpu",
             Self::OutOfMemory => "a larger voxel, or --backend cpu",
             _ => "--backend cpu gives the same result; a newer graphics driver may help",
         }

@@ -2,7 +2,7 @@
 
 use super::programs::{Peel, SLOTS};
 use super::run::{Run, Source};
-use super::scene::{self, Beam, Chunk, Tile};
+use super::scene::{self, Beam, Candidates, Chunk, Tile};
 use super::{GpuError, GpuLimits, shaders};
 use crate::ldi::Crossed;
 
@@ -20,16 +20,23 @@ impl Peel {
         beam: Beam,
         (low, size): ([i32; 2], [i32; 2]),
         limits: &GpuLimits,
-    ) -> Result<Vec<Crossed>, GpuError> {
+    ) -> Result<Vec<Crossed<'static>>, GpuError> {
         let side = run.device.entry().texture_side.min(TILE_SIDE).min(limits.tile_side);
         let tiles = Tile::of_window(low, size, side);
-        tiles.into_iter().map(|tile| self.tile(run, chunks, beam, tile)).collect()
+        let candidates = Candidates::of(run, chunks);
+        tiles.into_iter().map(|tile| self.tile(run, (chunks, &candidates), beam, tile)).collect()
     }
 
-    fn tile(&self, run: &mut Run<'_>, chunks: &[Chunk], beam: Beam, tile: Tile) -> Result<Crossed, GpuError> {
+    fn tile(
+        &self,
+        run: &mut Run<'_>,
+        (chunks, candidates): (&[Chunk], &[Candidates]),
+        beam: Beam,
+        tile: Tile,
+    ) -> Result<Crossed<'static>, GpuError> {
         let textures = Textures::new(run, tile.size);
-        let views = beam.views(run, &tile, chunks);
-        let groups = self.groups(run, chunks, &views, &textures);
+        let views = beam.views(run, &tile, 0, chunks);
+        let groups = self.groups(run, candidates, &views, &textures);
         let queries = run.device.raw.create_query_set(&wgpu::QuerySetDescriptor {
             label: None,
             ty: wgpu::QueryType::Occlusion,
@@ -39,16 +46,16 @@ impl Peel {
         let passed = run.buffer(2 * BATCH as u64, usage);
         let mut layers: Vec<Vec<u32>> = Vec::new();
         let mut encoder = run.encoder();
-        run.device.setup().encode(run, &mut encoder, chunks, &views);
+        run.device.setup().encode(run, &mut encoder, (chunks, candidates), &views);
         textures.clear(&mut encoder);
         loop {
             for (k, groups) in groups.iter().enumerate() {
                 let mut pass = textures.begin(run, &mut encoder, k, &queries);
                 pass.begin_occlusion_query(k as u32);
                 pass.set_pipeline(&self.pipeline);
-                for (group, chunk) in groups.iter().zip(chunks) {
+                for (group, found) in groups.iter().zip(candidates) {
                     pass.set_bind_group(0, group, &[]);
-                    pass.draw_indirect(&chunk.arguments, 0);
+                    pass.draw_indirect(&found.arguments, 0);
                 }
                 pass.end_occlusion_query();
             }
@@ -64,7 +71,7 @@ impl Peel {
             if filled < BATCH {
                 let numbers = match layers.len() {
                     0 => Vec::new(),
-                    _ => scene::numbers(run, chunks)?,
+                    _ => scene::numbers(run, candidates)?,
                 };
                 return Ok(gather(tile, &layers, &numbers));
             }
@@ -76,17 +83,17 @@ impl Peel {
     fn groups(
         &self,
         run: &mut Run<'_>,
-        chunks: &[Chunk],
+        chunks: &[Candidates],
         views: &[wgpu::Buffer],
         textures: &Textures,
     ) -> Vec<Vec<wgpu::BindGroup>> {
         let layout = self.pipeline.get_bind_group_layout(0);
-        let group = |k: usize, (chunk, view): (&Chunk, &wgpu::Buffer)| {
+        let group = |k: usize, (found, view): (&Candidates, &wgpu::Buffer)| {
             let depths = view_of(&textures.depths[(k + 1) % 2]);
             let slots = view_of(&textures.slots[(k + BATCH - 1) % BATCH]);
             let textures = [&depths, &slots].map(wgpu::BindingResource::TextureView);
             let [depths, slots] = textures;
-            run.bind(&layout, &[view.as_entire_binding(), chunk.candidates.as_entire_binding(), depths, slots])
+            run.bind(&layout, &[view.as_entire_binding(), found.candidates.as_entire_binding(), depths, slots])
         };
         (0..BATCH).map(|k| chunks.iter().zip(views).map(|both| group(k, both)).collect()).collect()
     }
@@ -157,7 +164,7 @@ fn depth(view: &wgpu::TextureView, cleared: f32) -> wgpu::RenderPassDepthStencil
 }
 
 /// Puts the layers of each ray one behind the other. `numbers`: those of the triangles in the slots.
-fn gather(tile: Tile, layers: &[Vec<u32>], numbers: &[u32]) -> Crossed {
+fn gather(tile: Tile, layers: &[Vec<u32>], numbers: &[u32]) -> Crossed<'static> {
     let rays = tile.rays() as usize;
     let (mut ends, mut triangles) = (Vec::with_capacity(rays), Vec::new());
     for ray in 0..rays {
@@ -166,5 +173,5 @@ fn gather(tile: Tile, layers: &[Vec<u32>], numbers: &[u32]) -> Crossed {
         triangles.extend(on_ray.map(|slot| numbers.get(slot as usize - 1).copied().unwrap_or(u32::MAX)));
         ends.push(triangles.len() as u32);
     }
-    Crossed { low: tile.low, size: tile.size, ends, triangles }
+    Crossed { low: tile.low, size: tile.size, first: 0, ends: ends.into(), triangles: triangles.into() }
 }

@@ -4,8 +4,6 @@ use super::shaders;
 
 /// Slots of triangles on the rays, as peeling draws them.
 pub(super) const SLOTS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-/// The target of scattering. Nothing is drawn to it: passes must have a target.
-pub(super) const TARGET: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
 
 /// Finds the triangles that may cross the rays of a tile.
 #[derive(Debug)]
@@ -36,16 +34,17 @@ impl Peel {
 /// Counts the crossings of each ray, and writes them.
 #[derive(Debug)]
 pub(super) struct Scatter {
-    pub count: wgpu::RenderPipeline,
-    pub scatter: wgpu::RenderPipeline,
+    pub count: wgpu::ComputePipeline,
+    pub scatter: wgpu::ComputePipeline,
+    pub pack: wgpu::ComputePipeline,
     pub scan: Scan,
 }
 
 impl Scatter {
     pub fn new(device: &wgpu::Device) -> Self {
-        let target = wgpu::ColorTargetState { format: TARGET, blend: None, write_mask: wgpu::ColorWrites::empty() };
-        let pipeline = |entry| shaders::render(device, shaders::SCATTER, entry, &[], target.clone(), None);
-        Self { count: pipeline("count"), scatter: pipeline("scatter"), scan: Scan::new(device) }
+        let pipeline = |entry| shaders::compute(device, shaders::SCATTER, entry, &[]);
+        let pack = shaders::compute(device, shaders::PACK, "pack", &[]);
+        Self { count: pipeline("count"), scatter: pipeline("scatter"), pack, scan: Scan::new(device) }
     }
 }
 
@@ -60,5 +59,36 @@ impl Scan {
     fn new(device: &wgpu::Device) -> Self {
         let pipeline = |entry| shaders::compute(device, shaders::SCAN, entry, &[]);
         Self { sum_blocks: pipeline("sum_blocks"), raise_blocks: pipeline("raise_blocks") }
+    }
+}
+
+/// Distances over a lattice.
+#[derive(Debug)]
+pub(super) struct Field {
+    pub count: wgpu::ComputePipeline,
+    pub enlist: wgpu::ComputePipeline,
+    pub open: wgpu::ComputePipeline,
+    pub mark: wgpu::ComputePipeline,
+    pub judge: wgpu::ComputePipeline,
+    pub share: wgpu::ComputePipeline,
+    pub measure: wgpu::ComputePipeline,
+    pub collect: wgpu::ComputePipeline,
+    pub scan: Scan,
+}
+
+impl Field {
+    pub fn new(device: &wgpu::Device) -> Self {
+        let pipeline = |parts, entry| shaders::compute(device, parts, entry, &[]);
+        Self {
+            count: pipeline(shaders::ENLIST, "count"),
+            enlist: pipeline(shaders::ENLIST, "enlist"),
+            open: pipeline(shaders::OPEN, "open"),
+            mark: pipeline(shaders::MARK, "mark"),
+            judge: pipeline(shaders::JUDGE, "judge"),
+            share: pipeline(shaders::SHARE, "share"),
+            measure: pipeline(shaders::MEASURE, "measure"),
+            collect: pipeline(shaders::COLLECT, "collect"),
+            scan: Scan::new(device),
+        }
     }
 }

@@ -4,7 +4,7 @@ use glam::IVec3;
 use rayon::prelude::*;
 
 use super::run::{Run, Source};
-use super::{GpuError, GpuLimits};
+use super::{GpuError, GpuMethod, GpuOptions};
 use crate::lattice::Direction;
 use crate::ldi::SNAP_BITS;
 
@@ -15,15 +15,34 @@ const CANDIDATE_WORDS: u64 = 24;
 /// Vertices that are drawn for each candidate, as in the shader.
 const VERTICES: u64 = 9;
 
-/// Some of the triangles, and those of them that are candidates for a tile.
+/// Some of the triangles.
 pub(super) struct Chunk {
     pub corners: wgpu::Buffer,
+    first: u32,
+    pub count: u32,
+}
+
+/// Those of a chunk that may cross the rays of a tile.
+pub(super) struct Candidates {
     pub candidates: wgpu::Buffer,
     pub numbers: wgpu::Buffer,
     /// What draws the candidates.
     pub arguments: wgpu::Buffer,
-    first: u32,
-    pub count: u32,
+    count: u32,
+}
+
+impl Candidates {
+    /// Room for those of each chunk.
+    pub fn of(run: &mut Run<'_>, chunks: &[Chunk]) -> Vec<Self> {
+        let (storage, read) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::COPY_SRC);
+        let room = |chunk: &Chunk| Self {
+            candidates: run.buffer(CANDIDATE_WORDS * u64::from(chunk.count), storage),
+            numbers: run.buffer(chunk.count.into(), storage | read),
+            arguments: run.upload(&[0, 1, 0, 0], storage | wgpu::BufferUsages::INDIRECT),
+            count: chunk.count,
+        };
+        chunks.iter().map(room).collect()
+    }
 }
 
 /// Uploads the triangles, in as many chunks as the adapter needs.
@@ -31,12 +50,16 @@ pub(super) fn upload(
     run: &mut Run<'_>,
     vertices: &[IVec3],
     triangles: &[[u32; 3]],
-    limits: &GpuLimits,
+    options: &GpuOptions,
 ) -> Result<Vec<Chunk>, GpuError> {
     let entry = run.device.entry();
-    let fit = entry.binding_bytes.min(entry.buffer_bytes) / (4 * CANDIDATE_WORDS);
+    let words = match options.method {
+        GpuMethod::Peel => CANDIDATE_WORDS,
+        GpuMethod::Scatter => WORDS,
+    };
+    let fit = entry.binding_bytes.min(entry.buffer_bytes) / (4 * words);
     // Vertices of one draw are numbered with 32 bits.
-    let most = fit.min(u64::from(u32::MAX) / VERTICES).min(u64::from(limits.triangles)).max(1) as usize;
+    let most = fit.min(u64::from(u32::MAX) / VERTICES).min(u64::from(options.limits.triangles)).max(1) as usize;
     let mut chunks = Vec::new();
     for (n, part) in triangles.chunks(most).enumerate() {
         run.progress.check()?;
@@ -46,23 +69,15 @@ pub(super) fn upload(
                 corner.copy_from_slice(&vertices[v as usize].to_array().map(|c| c as u32));
             }
         });
-        let (storage, read) = (wgpu::BufferUsages::STORAGE, wgpu::BufferUsages::COPY_SRC);
-        let count = part.len() as u64;
-        chunks.push(Chunk {
-            corners: run.upload(&corners, storage),
-            candidates: run.buffer(CANDIDATE_WORDS * count, storage),
-            numbers: run.buffer(count, storage | read),
-            arguments: run.upload(&[0, 1, 0, 0], storage | wgpu::BufferUsages::INDIRECT),
-            first: (n * most) as u32,
-            count: part.len() as u32,
-        });
+        let corners = run.upload(&corners, wgpu::BufferUsages::STORAGE);
+        chunks.push(Chunk { corners, first: (n * most) as u32, count: part.len() as u32 });
         run.device.check()?;
     }
     Ok(chunks)
 }
 
 /// The numbers of the triangles in the slots, those of the chunks one after another.
-pub(super) fn numbers(run: &mut Run<'_>, chunks: &[Chunk]) -> Result<Vec<u32>, GpuError> {
+pub(super) fn numbers(run: &mut Run<'_>, chunks: &[Candidates]) -> Result<Vec<u32>, GpuError> {
     let sources: Vec<_> = chunks.iter().map(|chunk| Source::Words(&chunk.numbers, u64::from(chunk.count))).collect();
     Ok(run.finish(run.encoder(), &sources)?.concat())
 }
@@ -116,15 +131,16 @@ pub(super) struct Beam {
 }
 
 impl Beam {
-    /// The uniform `View` of the shaders, for each chunk.
-    pub fn views(&self, run: &mut Run<'_>, tile: &Tile, chunks: &[Chunk]) -> Vec<wgpu::Buffer> {
+    /// The uniform `View` of the shaders, for each chunk. `offset`: the number of the tile's first ray among those of all tiles that are worked on
+    /// together.
+    pub fn views(&self, run: &mut Run<'_>, tile: &Tile, offset: u32, chunks: &[Chunk]) -> Vec<wgpu::Buffer> {
         let step = (1u32 << SNAP_BITS) / self.factor;
         let Direction { main, shear_u, shear_v } = self.direction;
         let [low_u, low_v, shear_u, shear_v] = [tile.low[0], tile.low[1], shear_u, shear_v].map(|k| k as u32);
         let [width, height] = tile.size;
         let view = |chunk: &Chunk| {
             let (first, count) = (chunk.first, chunk.count);
-            let words = [low_u, low_v, width, height, shear_u, shear_v, main as u32, step, first, count, 0, 0];
+            let words = [low_u, low_v, width, height, shear_u, shear_v, main as u32, step, first, count, offset, 0];
             run.upload(&words, wgpu::BufferUsages::UNIFORM)
         };
         chunks.iter().map(view).collect()

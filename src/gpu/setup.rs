@@ -2,7 +2,7 @@
 
 use super::programs::Setup;
 use super::run::Run;
-use super::scene::Chunk;
+use super::scene::{Candidates, Chunk};
 
 /// Triangles of a workgroup, as in the shader.
 const WIDTH: u32 = 64;
@@ -15,14 +15,14 @@ impl Setup {
         &self,
         run: &mut Run<'_>,
         encoder: &mut wgpu::CommandEncoder,
-        chunks: &[Chunk],
+        (chunks, candidates): (&[Chunk], &[Candidates]),
         views: &[wgpu::Buffer],
     ) {
         let layout = self.pipeline.get_bind_group_layout(0);
-        for (chunk, view) in chunks.iter().zip(views) {
+        for ((chunk, found), view) in chunks.iter().zip(candidates).zip(views) {
             // The number of vertices, counted up by the shader.
-            encoder.clear_buffer(&chunk.arguments, 0, Some(4));
-            let buffers = [view, &chunk.corners, &chunk.candidates, &chunk.numbers, &chunk.arguments];
+            encoder.clear_buffer(&found.arguments, 0, Some(4));
+            let buffers = [view, &chunk.corners, &found.candidates, &found.numbers, &found.arguments];
             let group = run.bind(&layout, &buffers.map(|buffer| buffer.as_entire_binding()));
             let timestamp_writes = run.clock.compute("set up");
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });

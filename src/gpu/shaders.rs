@@ -4,6 +4,8 @@ use crate::ldi::SNAP_BITS;
 
 const WIDE: &str = include_str!("../../shaders/wide.wgsl");
 const TRIANGLE: &str = include_str!("../../shaders/triangle.wgsl");
+const FEATURE: &str = include_str!("../../shaders/feature.wgsl");
+const BLOCK: &str = include_str!("../../shaders/field_block.wgsl");
 const DRAW: &str = include_str!("../../shaders/draw.wgsl");
 
 /// Finding candidates.
@@ -11,9 +13,23 @@ pub(super) const SETUP: &[&str] = &[WIDE, TRIANGLE, include_str!("../../shaders/
 /// Depth peeling.
 pub(super) const PEEL: &[&str] = &[WIDE, TRIANGLE, DRAW, include_str!("../../shaders/peel.wgsl")];
 /// Counting and scattering crossings.
-pub(super) const SCATTER: &[&str] = &[WIDE, TRIANGLE, DRAW, include_str!("../../shaders/scatter.wgsl")];
-/// Slices of prisms.
-pub(super) const PRISM: &[&str] = &[include_str!("../../shaders/prism.wgsl")];
+pub(super) const SCATTER: &[&str] = &[WIDE, TRIANGLE, include_str!("../../shaders/scatter.wgsl")];
+/// Numbers of crossings as bytes.
+pub(super) const PACK: &[&str] = &[include_str!("../../shaders/scatter_pack.wgsl")];
+/// Sorting features into the blocks of a region.
+pub(super) const ENLIST: &[&str] = &[WIDE, FEATURE, include_str!("../../shaders/field_enlist.wgsl")];
+/// Blocks that have any feature, close together.
+pub(super) const OPEN: &[&str] = &[BLOCK, include_str!("../../shaders/field_open.wgsl")];
+/// Counts that are not 0.
+pub(super) const MARK: &[&str] = &[include_str!("../../shaders/field_mark.wgsl")];
+/// Which features matter to which children of blocks.
+pub(super) const JUDGE: &[&str] = &[WIDE, FEATURE, BLOCK, include_str!("../../shaders/field_judge.wgsl")];
+/// The lists of the children.
+pub(super) const SHARE: &[&str] = &[BLOCK, include_str!("../../shaders/field_share.wgsl")];
+/// Distances at voxels.
+pub(super) const MEASURE: &[&str] = &[WIDE, FEATURE, BLOCK, include_str!("../../shaders/field_measure.wgsl")];
+/// The lists of blocks in doubt.
+pub(super) const COLLECT: &[&str] = &[BLOCK, include_str!("../../shaders/field_collect.wgsl")];
 /// Sums of all before.
 pub(super) const SCAN: &[&str] = &[include_str!("../../shaders/scan.wgsl")];
 /// Integers of 64 bits, for tests.
@@ -109,9 +125,12 @@ mod tests {
     use super::*;
     use wgpu::naga;
 
+    const ALL: &[&[&str]] =
+        &[SETUP, PEEL, SCATTER, PACK, ENLIST, OPEN, MARK, JUDGE, SHARE, MEASURE, COLLECT, SCAN, CHECK_WIDE];
+
     #[test]
     fn every_shader_is_valid() {
-        for parts in [SETUP, PEEL, SCATTER, PRISM, SCAN, CHECK_WIDE] {
+        for parts in ALL {
             let source = parts.concat();
             let module =
                 naga::front::wgsl::parse_str(&source).unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
@@ -125,7 +144,7 @@ mod tests {
     #[test]
     fn every_file_of_the_shaders_folder_is_used() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders");
-        let used: String = [SETUP, PEEL, SCATTER, PRISM, SCAN, CHECK_WIDE].concat().concat();
+        let used: String = ALL.concat().concat();
         for entry in std::fs::read_dir(folder).expect("the folder of shaders") {
             let path = entry.expect("an entry").path();
             let text = std::fs::read_to_string(&path).expect("a readable shader");

@@ -84,6 +84,15 @@ impl Bricks {
         self.slots.get(&brick).copied().unwrap_or_else(|| self.inactive_slot(brick))
     }
 
+    /// The number of a brick among the active ones, if it is one.
+    #[inline]
+    pub fn number(&self, brick: IVec3) -> Option<u32> {
+        match self.slots.get(&brick) {
+            Some(&Slot::Active(n)) => Some(n),
+            _ => None,
+        }
+    }
+
     fn inactive_slot(&self, brick: IVec3) -> Slot {
         let before = self.active.partition_point(|b| order(b) < order(&brick));
         let inside = before

@@ -3,12 +3,14 @@
 mod bricks;
 mod directions;
 mod distance_field;
+mod domain;
 mod interpolate;
 mod sizing;
 
 pub use bricks::{BRICK, BRICK_VOXELS, Bricks, Grid, Slot, brick_of, index_in_brick, voxel_in_brick};
 pub use directions::{DIRECTIONS, Direction};
 pub use distance_field::{DistanceField, DistanceUnit};
+pub use domain::Domain;
 pub use interpolate::{Interpolated, trilinear};
 
 use glam::{DVec3, IVec3};

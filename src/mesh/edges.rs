@@ -120,6 +120,17 @@ impl<'a> Edges<'a> {
         Self { triangles, buckets: Buckets::new(vertices, 3 * triangles.len(), half) }
     }
 
+    /// What `make` makes of every edge, by vertices, on all threads.
+    pub(crate) fn map<T: Send>(&self, make: impl Fn(Edge<'_>) -> T + Sync) -> Vec<T> {
+        let of = |low: usize| {
+            let edges = self.buckets.get(low).chunk_by(|a, b| a >> 32 == b >> 32);
+            edges
+                .map(|entries| make(Edge { ends: [low as u32, (entries[0] >> 32) as u32], entries }))
+                .collect::<Vec<T>>()
+        };
+        (0..self.buckets.keys()).into_par_iter().with_min_len(1 << 10).flat_map_iter(of).collect()
+    }
+
     /// Calls `visit` with every edge, by vertices.
     pub(crate) fn each(&self, mut visit: impl FnMut(Edge<'_>)) {
         for low in 0..self.buckets.keys() {

@@ -7,7 +7,7 @@ use super::frame::Frame;
 use super::plan::{Offsets, area, check_limits};
 use super::stages::Stages;
 use super::{Changed, MorphologyError, Report, SurfaceOptions, VoxelSize, refine, sizing};
-use crate::fit::{Facets, FitOptions, FitReport, Sides, Surface, TargetDistance, fit};
+use crate::fit::{Facets, FitOptions, FitReport, Kept, Sides, Surface, TargetDistance, fit};
 use crate::lattice::Lattice;
 use crate::ldi::Evidence;
 use crate::mesh::{Bounds, Solid, TriMesh, ValidateOptions, validate};
@@ -138,7 +138,7 @@ impl Job<'_> {
         self.fitted(
             (offset, &lattice),
             (&TriMesh::default(), &off),
-            Evidence::default(),
+            &Kept::default(),
             self.surface.fit,
             thinner_than(level),
         )
@@ -170,7 +170,7 @@ impl Job<'_> {
         let made = self.fitted(
             (there, &lattice),
             (&TriMesh::default(), &off),
-            Evidence::default(),
+            &Kept::default(),
             Some(whole),
             thinner_than(radius),
         )?;
@@ -195,11 +195,12 @@ impl Job<'_> {
         }
         stages.begin(Stage::Fit)?;
         let evidence = Evidence::of_samples(reached.iter().map(|r| (r.tried, r.touched)));
+        let kept = Kept::of(self.solid, &evidence, self.h, self.progress)?;
         let off = |p| {
             let own = body.at(p, self.h).0.abs();
             if own < 1e-3 * self.h { own } else { own.min(balls.at(p, self.h).0.abs()) }
         };
-        self.fitted((back.offset, &lattice), (self.solid, &off), evidence, self.surface.fit, None)
+        self.fitted((back.offset, &lattice), (self.solid, &off), &kept, self.surface.fit, None)
     }
 
     /// The solid as it is.
@@ -220,7 +221,7 @@ impl Job<'_> {
         &self,
         (offset, lattice): (Offset, &Lattice),
         (source, off): (&TriMesh, TargetDistance<'_>),
-        evidence: Evidence,
+        kept: &Kept,
         options: Option<FitOptions>,
         thinner_than: Option<f64>,
     ) -> Result<Made, MorphologyError> {
@@ -236,7 +237,7 @@ impl Job<'_> {
         let mut fitted = None;
         if let Some(options) = options {
             let options = FitOptions { rebuild: options.rebuild || source.triangles.is_empty(), ..options };
-            let (fit, report) = fit(&surface, &facets, &evidence, self.h, &options, self.progress)?;
+            let (fit, report) = fit(&surface, &facets, kept, self.h, &options, self.progress)?;
             (surface, fitted) = (fit, Some(report));
         }
         let own = |t: u32| surface.facet(&facets, t).and_then(|facet| facets.triangle(facet));

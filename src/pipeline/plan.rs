@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::ahead::{Ahead, Way};
 use super::frame::Frame;
 use super::outlook::Outlook;
+use super::rates::{COMBINED, KEPT, OFFSET, OFFSET_AND_BACK, REBUILT, Rates, SURVEYED, THICKENED, UNFITTED};
 use super::{BooleanError, LimitError, Method, Operand, Options, SurfaceOptions, VoxelSize, sizing};
 use crate::lattice::Lattice;
 use crate::ldi::{MAX_CROSSINGS, MAX_TRIANGLES};
@@ -29,7 +30,8 @@ pub struct Plan {
     pub triangles: u64,
     /// Estimated peak memory, bytes.
     pub memory: u64,
-    /// Bytes below which the run is refused: of an exact one, whose memory depends on what crosses what, those that its triangles take alone.
+    /// Bytes below which the run is refused: of an exact one, whose memory depends on what crosses what, those that its triangles take alone; of one with
+    /// voxels that keeps triangles, what its rays take, after which it is known how much is to be made.
     pub least_memory: u64,
     /// Estimated seconds on one core of an ordinary machine.
     pub seconds: f64,
@@ -53,46 +55,6 @@ pub(super) const BASE_BYTES: f64 = 11e6;
 const CROSSINGS_PER_CELL: f64 = 9.3;
 /// Bytes per crossing, for surface beyond what the lattice has cells for: many layers on few rays.
 const BYTES_PER_CROSSING: f64 = 50.0;
-
-/// Bytes at the peak for each of what it depends on. Fitted by `tools/plan.py` to all of the data set (see
-/// `docs/benchmarks.md`), and an eighth more, so that few runs need more than is planned.
-struct Rates {
-    /// Whatever the input.
-    base: f64,
-    /// Per h² of surface.
-    cell: f64,
-    /// Per triangle of the input.
-    triangle: f64,
-    /// Per h² of what closes holes, besides.
-    lid: f64,
-    /// Per h² of surface beside bends, besides.
-    bend: f64,
-    /// Per h² of three sides of the box, one of each pair: rays.
-    side: f64,
-    /// Per voxel of the band around the surface.
-    voxel: f64,
-}
-
-/// Most triangles stay as they are.
-const KEPT: Rates =
-    Rates { base: 11.5e6, cell: 1110.0, triangle: 600.0, lid: 2100.0, bend: 0.0, side: 85.0, voxel: 0.0 };
-/// The same of several operands, parts of which lie within one another.
-const COMBINED: Rates = Rates { cell: 1000.0, ..KEPT };
-/// The surface is built anew, and what is flat is simplified.
-const REBUILT: Rates =
-    Rates { base: 12.5e6, cell: 1080.0, triangle: 500.0, lid: 3180.0, bend: 2720.0, side: 270.0, voxel: 0.0 };
-/// The contour stays as it is.
-const UNFITTED: Rates =
-    Rates { base: 11e6, cell: 1160.0, triangle: 265.0, lid: 1300.0, bend: 320.0, side: 150.0, voxel: 0.0 };
-/// One offset of the solid, after it.
-const OFFSET: Rates =
-    Rates { base: 27e6, cell: 0.0, triangle: 219.0, lid: 4570.0, bend: 3572.0, side: 0.0, voxel: 87.0 };
-/// Two, the second from the first.
-const OFFSET_AND_BACK: Rates =
-    Rates { base: 75e6, cell: 0.0, triangle: 30.0, lid: 9000.0, bend: 5500.0, side: 0.0, voxel: 215.0 };
-/// One, where walls are thin.
-const THICKENED: Rates =
-    Rates { base: 22e6, cell: 1100.0, triangle: 0.0, lid: 5000.0, bend: 2000.0, side: 0.0, voxel: 0.0 };
 
 /// The band of an offset is this much wider than its radius, h.
 const OFFSET_MARGIN: f64 = 4.0;
@@ -175,9 +137,11 @@ pub fn plan<'a>(operands: impl IntoIterator<Item: Into<Operand<'a>>>, options: &
     let lattice = sizing::lattice(&bounds, VoxelSize::Length(h))?;
     let input = Input { touching, ..Input::surveyed(&[&rest]) };
     let plan = input.cost(&lattice, &options.surface(), Offsets::default());
-    let memory = plan.memory + (STANDING_BYTES * standing as f64) as u64;
-    let touching = touching as u64;
-    Ok(Plan { triangles: plan.triangles + standing as u64, touching, memory, least_memory: memory, ..plan })
+    let standing_memory = (STANDING_BYTES * standing as f64) as u64;
+    let memory = plan.memory + standing_memory;
+    let survey = || input.memory(&SURVEYED, &lattice, 0.0) as u64 + standing_memory;
+    let least_memory = if options.keeps() { survey().min(memory) } else { memory };
+    Ok(Plan { triangles: plan.triangles + standing as u64, touching: touching as u64, memory, least_memory, ..plan })
 }
 
 /// What offsets of a solid would cost, over a lattice around the mesh of a solid that exists, or of one that will be about where `mesh` is.
@@ -224,12 +188,37 @@ pub(super) fn check_limits(
     let input = Input::of(operands);
     input.check_numbers(lattice)?;
     let Some(allowed) = options.max_memory else { return Ok(()) };
+    check_memory(operands, lattice, allowed, &|input, lattice| input.cost(lattice, options, offsets).memory)
+}
+
+/// An error when rays, and the making of a share of the surface (0 to 1), most of which stays as it is, would need more memory than allowed, or more than 32 bits to number things.
+pub(super) fn check_share(
+    operands: &[&TriMesh],
+    lattice: &Lattice,
+    options: &SurfaceOptions,
+    share: f64,
+) -> Result<(), LimitError> {
+    Input::of(operands).check_numbers(lattice)?;
+    let Some(allowed) = options.max_memory else { return Ok(()) };
+    check_memory(operands, lattice, allowed, &|input, lattice| {
+        let (survey, all) = (input.memory(&SURVEYED, lattice, 0.0), input.memory(input.rates(options), lattice, 0.0));
+        (survey + share * (all - survey).max(0.0)) as u64
+    })
+}
+
+/// An error when `cost`, bytes, is more than allowed.
+fn check_memory(
+    operands: &[&TriMesh],
+    lattice: &Lattice,
+    allowed: u64,
+    cost: &dyn Fn(&Input, &Lattice) -> u64,
+) -> Result<(), LimitError> {
     // Most runs are allowed more than the worst surface of this size needs, and nothing is to be looked at.
-    if input.cost(lattice, options, offsets).memory <= allowed {
+    if cost(&Input::of(operands), lattice) <= allowed {
         return Ok(());
     }
     let input = Input::surveyed(operands);
-    let needed = input.cost(lattice, options, offsets).memory;
+    let needed = cost(&input, lattice);
     if needed <= allowed {
         return Ok(());
     }
@@ -237,7 +226,7 @@ pub(super) fn check_limits(
     let fits = |bounds: &Bounds| {
         let coarser = std::iter::successors(Some(1.1 * lattice.h), |h| Some(1.1 * h));
         let mut possible = coarser.take_while(|h| h / 1.1 < bounds.size().max_element());
-        possible.find(|&h| input.cost(&Lattice::around(bounds, h), options, offsets).memory <= allowed)
+        possible.find(|&h| cost(&input, &Lattice::around(bounds, h)) <= allowed)
     };
     Err(LimitError::Memory { needed, allowed, voxel_that_fits: bounds.as_ref().and_then(fits) })
 }
@@ -335,17 +324,22 @@ impl Input {
             return self.offsets_cost(lattice, options, offsets);
         }
         let cells = self.cells(lattice);
-        let rates = match &options.fit {
-            None => &UNFITTED,
-            Some(fit) if !fit.rebuild && self.operands > 1 => &COMBINED,
-            Some(fit) if !fit.rebuild => &KEPT,
-            Some(_) => &REBUILT,
-        };
         let (seconds, triangles) = match &options.fit {
             Some(fit) if !fit.rebuild => self.kept(lattice, cells),
             _ => (self.rebuild_seconds(cells), TRIANGLES_PER_CELL * cells),
         };
-        Plan { triangles: triangles as u64, seconds, ..self.sized(lattice, self.memory(rates, lattice, 0.0)) }
+        let memory = self.memory(self.rates(options), lattice, 0.0);
+        Plan { triangles: triangles as u64, seconds, ..self.sized(lattice, memory) }
+    }
+
+    /// Of a boolean of all of the surface.
+    fn rates(&self, options: &SurfaceOptions) -> &'static Rates {
+        match &options.fit {
+            None => &UNFITTED,
+            Some(fit) if !fit.rebuild && self.operands > 1 => &COMBINED,
+            Some(fit) if !fit.rebuild => &KEPT,
+            Some(_) => &REBUILT,
+        }
     }
 
     /// Of offsets of a solid.

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use super::{Precision, SurfaceOptions, TriangleSource};
 use crate::contour::{Collapsed, Contour, ContourVertex, Crossing, Ground, LatticeEdge, Merge, collapse_same_voxel};
 use crate::fit::{Facets, Side, Sides, Surface};
-use crate::lattice::{DistanceField, Lattice};
-use crate::ldi::{Expression, edge_crossing};
+use crate::lattice::{DistanceField, Lattice, brick_of};
+use crate::ldi::edge_crossing;
 use crate::mesh::{Plane, TriMesh, ValidateOptions, validate};
 use crate::progress::{Progress, Stopped};
 use crate::survey::{Soup, Survey};
@@ -17,10 +17,13 @@ use crate::vote::{Lid, Winding};
 /// (0.02) show in the mean error of curved parts.
 const FLAT: f64 = 0.01;
 
-/// Where the solid ends over a hole, on the lattice edge between two voxels.
-fn lid(winding: &Winding<'_>, expression: &Expression, inside: IVec3, outside: IVec3) -> Option<Lid> {
+/// Where the solid ends over a hole, on the lattice edge between two voxels; nowhere along the border of the survey's domain.
+fn lid(survey: &Survey, winding: &Winding<'_>, inside: IVec3, outside: IVec3) -> Option<Lid> {
+    if !survey.domain.holds(brick_of(outside)) {
+        return None;
+    }
     // A stop shows again at the next check.
-    winding.crossing(inside, outside, expression).ok().flatten()
+    winding.crossing(inside, outside, &survey.expression).ok().flatten()
 }
 
 /// The crossings of lattice edges for the contour: with the surface, or with a lid over a hole.
@@ -36,7 +39,7 @@ pub(super) fn crossings<'a>(
         }
         let upper = edge.voxel + IVec3::AXES[edge.axis as usize];
         let (inside, outside) = if lower_inside { (edge.voxel, upper) } else { (upper, edge.voxel) };
-        let t = lid(winding, &survey.expression, inside, outside)?.t;
+        let t = lid(survey, winding, inside, outside)?.t;
         Some(Crossing { t: if lower_inside { t } else { 1.0 - t }, triangle: None })
     }
 }
@@ -53,7 +56,7 @@ pub(super) fn lids(
     let found = bare.par_iter().map(|&v| {
         progress.check()?;
         let ContourVertex { voxel, outside, .. } = contour.vertices[v];
-        Ok(lid(winding, &survey.expression, voxel, outside).map(|lid| {
+        Ok(lid(survey, winding, voxel, outside).map(|lid| {
             let at = survey.lattice.to_model(voxel.as_dvec3().lerp(outside.as_dvec3(), lid.t));
             (v, Plane { normal: lid.normal, offset: lid.normal.dot(at) })
         }))

@@ -4,9 +4,10 @@ use glam::DVec3;
 
 use super::apart::{Standing, touch};
 use super::holes::Plan;
-use super::rebuild::{Ground, Job, joined};
+use super::part::{CLEAR, Part};
+use super::rebuild::{Job, joined};
 use super::stages::Stages;
-use super::{BooleanError, Draft, Method, TriangleSource, sizing};
+use super::{BooleanError, Draft, Method, sizing};
 use crate::fill::Rim;
 use crate::lattice::Lattice;
 use crate::mesh::{Bounds, ValidateOptions, validate};
@@ -20,8 +21,6 @@ const ACROSS: f64 = 24.0;
 const MOST_ALONG: f64 = 256.0;
 /// A lattice of more than this part of the box of all is none around holes.
 const MOST: f64 = 0.25;
-/// What is made keeps so many voxels away from the border, along which the contour is closed.
-const CLEAR: f64 = 3.0;
 
 impl Job<'_> {
     /// The holes of the one operand closed by the lids of a plan, and those that have none from voxels around them. `None` where there is no such hole, where not all of the
@@ -44,14 +43,14 @@ impl Job<'_> {
         let Some(whole) = soup.mesh.bounds() else { return Ok(None) };
         let Some(lattice) = window(&soup, &rims, &whole, self.h) else { return Ok(None) };
         let [min, max] = [DVec3::splat(CLEAR), (lattice.dims - 1).as_dvec3() - CLEAR].map(|p| lattice.to_model(p));
-        let ground = Ground { lattice, finest: sizing::finest(&whole), window: Some(Bounds { min, max }) };
-        let made = match self.on(&ground, soup.clone().into_owned(), stages) {
-            Ok(made) => made,
+        let part = Part::Box(Bounds { min, max });
+        let mut surveyed = match self.surveyed(soup.into_owned(), &lattice, stages) {
+            Ok(surveyed) => surveyed,
             Err(BooleanError::Stopped(stopped)) => return Err(stopped.into()),
-            // Whatever there is to say of it is said of the whole.
             Err(_) => return Ok(None),
         };
-        if !stays_beyond(&made, &soup, &lattice) || touch(&made.mesh, &standing.mesh, self.progress)? {
+        let Some(made) = self.within(&part, &mut surveyed, sizing::finest(&whole), stages)? else { return Ok(None) };
+        if touch(&made.mesh, &standing.mesh, self.progress)? {
             return Ok(None);
         }
         let check = ValidateOptions { self_intersections: true, weld: true };
@@ -80,30 +79,4 @@ fn window(soup: &Soup, rims: &[&Rim], whole: &Bounds, h: f64) -> Option<Lattice>
     let volume = |min: DVec3, max: DVec3| (max - min).max(DVec3::splat(h)).element_product();
     let held = volume(window.min.max(whole.min), window.max.min(whole.max));
     (held <= MOST * volume(whole.min, whole.max)).then(|| Lattice::around(&window, h))
-}
-
-/// Whether all triangles of a soup that reach beyond a lattice are triangles of what was made, once each, and what voxels made keeps away from its border.
-fn stays_beyond(made: &Draft, soup: &Soup, lattice: &Lattice) -> bool {
-    let last = (lattice.dims - 1).as_dvec3();
-    let reaches_out = |corners: [DVec3; 3]| {
-        corners.into_iter().map(|p| lattice.to_lattice(p)).any(|p| p.min(last - p).min_element() < CLEAR)
-    };
-    let mut times = vec![0u32; soup.source.len()];
-    let mut lids = 0;
-    for (t, source) in made.sources.iter().enumerate() {
-        if !reaches_out(made.mesh.corners(t)) {
-            continue;
-        }
-        match *source {
-            TriangleSource::Operand { triangle, .. } => {
-                let Ok(n) = soup.source.binary_search(&triangle) else { return false };
-                times[n] += 1;
-            }
-            TriangleSource::Lid { .. } => lids += 1,
-            TriangleSource::Closed => return false,
-        }
-    }
-    let beyond = |t: &usize| reaches_out(soup.mesh.corners(*t));
-    let lids_beyond = (soup.source.len()..soup.mesh.triangles.len()).filter(beyond).count();
-    lids == lids_beyond && (0..times.len()).all(|t| times[t] == u32::from(beyond(&t)))
 }

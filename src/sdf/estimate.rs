@@ -75,7 +75,7 @@ fn bin(spans: &[Spans], bricks: &Bricks, progress: &Progress) -> Result<Bins, St
 fn points(spans: &Spans, bricks: &Bricks) -> Vec<(u32, Point)> {
     let layers = &spans.layers;
     let mut found = Vec::with_capacity(layers.hits.len());
-    let mut last = (IVec3::MIN, Slot::Outside);
+    let mut last = (IVec3::MIN, None);
     for ray in (0..layers.ray_count()).filter(|&ray| !spans.is_silent(ray)) {
         let hits = layers.of(ray);
         if hits.is_empty() {
@@ -89,9 +89,9 @@ fn points(spans: &Spans, bricks: &Bricks) -> Vec<(u32, Point)> {
             }
             let brick = brick_of(p.as_ivec3());
             if brick != last.0 {
-                last = (brick, bricks.slot(brick));
+                last = (brick, bricks.number(brick));
             }
-            if let Slot::Active(n) = last.1 {
+            if let Some(n) = last.1 {
                 let at = (p - (brick * BRICK).as_dvec3()).as_vec3();
                 found.push((n, Point { at, triangle: hit.triangle() << 1 | hit.reversed() as u32 }));
             }

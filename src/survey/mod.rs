@@ -15,7 +15,7 @@ pub use soup::{Soup, SoupError};
 
 use rayon::prelude::*;
 
-use crate::lattice::{Grid, Lattice};
+use crate::lattice::{Domain, Grid, Lattice};
 use crate::ldi::{Evidence, Expression, Lengths, Spans, spans, widths};
 use crate::mesh::{Plane, TriMesh};
 use crate::orient::OrientMode;
@@ -37,6 +37,8 @@ pub struct Survey {
     pub evidence: Evidence,
     /// Rays and crossings before the spans were made of them.
     pub count: RayCount,
+    /// Where voxels are voted on.
+    pub domain: Domain,
 }
 
 impl Survey {
@@ -47,7 +49,8 @@ impl Survey {
         let walk = |layers| progress.check().map(|()| spans(layers, &soup.operands, expression));
         let spans: Vec<Spans> = layers.into_par_iter().map(walk).collect::<Result<_, Stopped>>()?;
         evidence.add(&spans);
-        Ok(Self { soup, lattice, expression: expression.clone(), spans, evidence, count })
+        let domain = Domain::of(&lattice);
+        Ok(Self { soup, lattice, expression: expression.clone(), spans, evidence, count, domain })
     }
 
     /// Of one mesh that is taken as it is, on the main processor: for looking at the stages by themselves.
@@ -68,7 +71,8 @@ impl Survey {
 
     /// Those who vote.
     pub fn jury<'a>(&'a self, rule: VoteRule, winding: &'a Winding<'a>) -> Jury<'a> {
-        Jury { spans: &self.spans, operands: &self.soup.operands, expression: &self.expression, rule, winding }
+        let Self { spans, soup, expression, domain, .. } = self;
+        Jury { spans, operands: &soup.operands, expression, rule, winding, domain }
     }
 
     /// The planes of the operands' triangles, lattice coordinates.

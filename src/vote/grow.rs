@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::tally::{Jury, Votes};
-use crate::lattice::{BRICK, BRICK_VOXELS, Bricks, Grid, brick_of, index_in_brick};
+use crate::lattice::{BRICK_VOXELS, Bricks, Domain, Grid, brick_of, index_in_brick};
 use crate::ldi::Spans;
 use crate::progress::{Progress, Stopped};
 
@@ -27,23 +27,24 @@ const FACES: [(IVec3, usize, usize); 6] = [
 
 /// Votes on all voxels near the surface. Any two neighbouring voxels of which one is inside and
 /// the other outside lie in active bricks; every inactive brick has the class of the voxels next
-/// to it. What is beyond the lattice is outside: sheets that face one another can hold a winding number above ½ far beyond their box.
+/// to it. What is beyond the jury's domain is outside: sheets that face one another can hold a winding number above ½ far beyond their box.
 pub fn vote_near_surface(jury: &Jury<'_>, progress: &Progress) -> Result<Grid<Votes>, Stopped> {
     let mut known: FxHashMap<IVec3, BrickVotes> = FxHashMap::default();
     let mut uniform: FxHashMap<IVec3, bool> = FxHashMap::default();
-    let border = Border::of(jury.winding.dims());
     let mut wanted = bricks_with_crossings(jury.spans);
-    wanted.retain(|&brick| border.holds(brick));
+    wanted.retain(|&brick| jury.domain.holds(brick));
     if jury.winding.reaches_beyond() {
         // All of the border may lie inside.
-        wanted.extend(border.bricks());
+        wanted.extend(jury.domain.at_lattice_border());
         wanted.sort_unstable_by_key(|b| (b.z, b.y, b.x));
         wanted.dedup();
     }
-    while !wanted.is_empty() {
+    let mut skin = Vec::new();
+    while !wanted.is_empty() || !skin.is_empty() {
         let votes = vote(jury, &wanted, progress)?;
         known.extend(wanted.iter().copied().zip(votes));
-        for brick in &wanted {
+        known.extend(skin.iter().map(|&brick| (brick, jury.inside(brick))));
+        for brick in wanted.iter().chain(&skin) {
             uniform.remove(brick);
         }
         let probes = neighbours_in_doubt(&wanted, &known, &uniform);
@@ -56,8 +57,10 @@ pub fn vote_near_surface(jury: &Jury<'_>, progress: &Progress) -> Result<Grid<Vo
                 next.push(brick);
             }
         }
+        skin.clear();
         if next.is_empty() {
-            next = conflicts(&known, &mut uniform, &border);
+            next = conflicts(&known, &mut uniform, jury.domain);
+            skin = border_inside(&known, &mut uniform, jury.domain, &mut next);
         }
         next.sort_unstable_by_key(|b| (b.z, b.y, b.x));
         next.dedup();
@@ -132,34 +135,6 @@ fn face(votes: &[Votes; BRICK_VOXELS], axis: usize, side: usize) -> Face {
     Face { inside, uniform, unanimous }
 }
 
-/// The bricks that have voxels of the lattice.
-struct Border {
-    count: IVec3,
-}
-
-impl Border {
-    fn of(dims: IVec3) -> Self {
-        Self { count: (dims + BRICK - 1) / BRICK }
-    }
-
-    /// Whether a brick has voxels of the lattice.
-    fn holds(&self, brick: IVec3) -> bool {
-        brick.cmpge(IVec3::ZERO).all() && brick.cmplt(self.count).all()
-    }
-
-    /// Those that lie beside ones that have none.
-    fn bricks(&self) -> impl Iterator<Item = IVec3> {
-        let d = self.count;
-        let all = (0..d.z).flat_map(move |z| (0..d.y).flat_map(move |y| (0..d.x).map(move |x| IVec3::new(x, y, z))));
-        all.filter(|&brick| self.is_at(brick))
-    }
-
-    /// Whether a brick that has some lies beside one that has none.
-    fn is_at(&self, brick: IVec3) -> bool {
-        self.holds(brick) && (brick.cmpeq(IVec3::ZERO) | brick.cmpeq(self.count - 1)).any()
-    }
-}
-
 /// Bricks beside the `fresh` ones into which the surface may go on: across a face whose voxels
 /// differ, or on which the directions do not all agree.
 fn neighbours_in_doubt(
@@ -190,7 +165,7 @@ fn neighbours_in_doubt(
 fn conflicts(
     known: &FxHashMap<IVec3, BrickVotes>,
     uniform: &mut FxHashMap<IVec3, bool>,
-    border: &Border,
+    domain: &Domain,
 ) -> Vec<IVec3> {
     let mut bricks: Vec<IVec3> = known.keys().copied().collect();
     bricks.sort_unstable_by_key(|b| (b.z, b.y, b.x));
@@ -200,7 +175,7 @@ fn conflicts(
             let other = brick + step;
             if !known.contains_key(&other) {
                 let face = face(&known[&brick], axis, side);
-                if !border.holds(other) {
+                if !domain.holds(other) {
                     uniform.insert(other, false);
                 }
                 if *uniform.entry(other).or_insert(face.inside) != face.inside || !face.uniform {
@@ -212,7 +187,7 @@ fn conflicts(
     let mut tiles: Vec<(IVec3, bool)> = uniform.iter().map(|(&b, &inside)| (b, inside)).collect();
     tiles.sort_unstable_by_key(|(b, _)| (b.z, b.y, b.x));
     for &(brick, inside) in &tiles {
-        if inside && border.is_at(brick) {
+        if inside && domain.is_at_lattice_border(brick) {
             next.push(brick);
         }
         for step in [IVec3::X, IVec3::Y, IVec3::Z] {
@@ -222,6 +197,41 @@ fn conflicts(
         }
     }
     next
+}
+
+/// The inactive bricks along the border of the domain within the lattice that lie inside, sorted: there the contour is closed, whatever the rays say. What must
+/// become active beside them goes to `next`; what is in there is left out.
+fn border_inside(
+    known: &FxHashMap<IVec3, BrickVotes>,
+    uniform: &mut FxHashMap<IVec3, bool>,
+    domain: &Domain,
+    next: &mut Vec<IVec3>,
+) -> Vec<IVec3> {
+    let mut found: FxHashSet<IVec3> = FxHashSet::default();
+    let at_border = uniform.iter().filter(|&(&brick, &inside)| inside && domain.is_at_inner_border(brick));
+    let mut open: Vec<IVec3> = at_border.map(|(&brick, _)| brick).collect();
+    while let Some(brick) = open.pop() {
+        if !found.insert(brick) {
+            continue;
+        }
+        for (step, ..) in FACES {
+            let other = brick + step;
+            if known.contains_key(&other) || found.contains(&other) {
+                continue;
+            }
+            if !(domain.holds(other) && *uniform.entry(other).or_insert(true)) {
+                next.push(other);
+            } else if domain.is_at_inner_border(other) {
+                open.push(other);
+            }
+        }
+    }
+    for brick in next {
+        found.remove(brick);
+    }
+    let mut found: Vec<IVec3> = found.into_iter().collect();
+    found.sort_unstable_by_key(|b| (b.z, b.y, b.x));
+    found
 }
 
 /// The grid over all bricks that were voted on.

@@ -3,7 +3,7 @@
 use glam::IVec3;
 
 use super::{VoteRule, Winding};
-use crate::lattice::{BRICK, BRICK_VOXELS, Direction, index_in_brick, voxel_in_brick};
+use crate::lattice::{BRICK, BRICK_VOXELS, DIRECTIONS, Direction, Domain, index_in_brick, voxel_in_brick};
 use crate::ldi::{Expression, Hit, Operands, Spans};
 use crate::progress::Stopped;
 
@@ -57,6 +57,8 @@ pub struct Jury<'a> {
     pub rule: VoteRule,
     /// The winding numbers of the operands.
     pub winding: &'a Winding<'a>,
+    /// Where voxels may be inside.
+    pub domain: &'a Domain,
 }
 
 /// Rays of a brick along u or v, at most: 8 voxels and a shear of 7; and one to make it even.
@@ -80,6 +82,9 @@ struct Counts {
 impl Jury<'_> {
     /// The votes on the voxels of brick `brick`. Stops only while the winding numbers are prepared.
     pub fn brick(&self, brick: IVec3) -> Result<Box<[Votes; BRICK_VOXELS]>, Stopped> {
+        if !self.domain.holds(brick) {
+            return Ok(Box::new([Votes { valid: DIRECTIONS.len() as u8, ..Votes::default() }; BRICK_VOXELS]));
+        }
         let base = brick * BRICK;
         let mut masks = RayMasks { inside: [[0; WIDE]; WIDE], valid: [[0; WIDE]; WIDE] };
         let mut counts = Counts { inside: [0; 64], valid: [0; 64] };
@@ -102,7 +107,16 @@ impl Jury<'_> {
         Ok(votes)
     }
 
-    /// Whether a voxel is one of the lattice's: all others are outside.
+    /// The votes on the voxels of a brick that lies inside as far as the lattice goes, by the word of the bricks around it.
+    pub(super) fn inside(&self, brick: IVec3) -> Box<[Votes; BRICK_VOXELS]> {
+        let all = DIRECTIONS.len() as u8;
+        Box::new(std::array::from_fn(|n| {
+            let is_inside = self.holds(brick * BRICK + voxel_in_brick(n));
+            Votes { inside: if is_inside { all } else { 0 }, valid: all, is_inside }
+        }))
+    }
+
+    /// Whether a voxel of a brick that the domain holds is one of the lattice's: all others are outside.
     fn holds(&self, voxel: IVec3) -> bool {
         voxel.cmpge(IVec3::ZERO).all() && voxel.cmplt(self.winding.dims()).all()
     }

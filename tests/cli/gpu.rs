@@ -39,6 +39,42 @@ fn the_repaired_file_is_the_same_by_either_processor() {
 }
 
 #[test]
+fn the_field_of_a_graphics_adapter_is_the_exact_one() {
+    if device().is_none() {
+        return;
+    }
+    let folder = folder();
+    let field = |backend: &str| {
+        let out = folder.path().join(format!("{backend}.npy"));
+        let input = sample("torus.ply");
+        let [input, path] = [&input, &out].map(|path| path.to_str().expect("a plain path"));
+        let arguments =
+            ["sdf", input, "-o", path, "--resolution", "48", "--band", "3h", "--backend", backend, "--json"];
+        let report = run(&arguments).exits(0).json();
+        (std::fs::read(out).expect("an output"), report["result"]["distance"]["made_by"].clone(), report)
+    };
+    let ((cpu, by_cpu, _), (gpu, by_gpu, report)) = (field("cpu"), field("gpu"));
+    assert_eq!((&by_cpu["backend"], &by_gpu["backend"]), (&"cpu".into(), &"gpu".into()));
+    assert_eq!(field("auto").0, cpu, "auto is the main processor, on every machine");
+    assert!(by_gpu["bytes_down"].as_u64() > Some(10_000) && by_gpu["doubtful"].is_u64(), "{by_gpu}");
+    let voxel = report["result"]["distance"]["voxel"].as_f64().expect("a size");
+    // The header of these files takes a multiple of 64 bytes, the same in both.
+    assert_eq!(cpu.len(), gpu.len());
+    let numbers = |bytes: &[u8]| -> Vec<f32> {
+        let header = 10 + usize::from(bytes[8]) + 256 * usize::from(bytes[9]);
+        bytes[header..].chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+    };
+    let apart = numbers(&cpu).iter().zip(numbers(&gpu)).map(|(a, b)| f64::from((a - b).abs())).fold(0.0, f64::max);
+    assert!(apart < 1e-4 * voxel, "{apart} of {voxel}");
+    let out = folder.path().join("words.npy");
+    let [input, out] = [sample("torus.ply"), out].map(|path| path.to_str().expect("a plain path").to_string());
+    let words = run(&["sdf", &input, "-o", &out, "--resolution", "24", "--backend", "gpu"]).exits(0);
+    words.says(&["measured by", "again by the main processor"]);
+    let other = ["sdf", &input, "-o", &out, "--method", "prism", "--backend", "gpu", "--force"];
+    run(&other).exits(2).says(&["--method exact only"]);
+}
+
+#[test]
 fn small_jobs_stay_on_the_main_processor_by_default() {
     let folder = folder();
     let (_, report) = repaired(&sample("monkey_saddle.off"), "auto", folder.path());

@@ -2,7 +2,7 @@
 
 use meshwright::gpu::GpuMethod;
 
-use crate::common::gpu::{BOTH, by, check_closed, check_prisms, compare, device};
+use crate::common::gpu::{BOTH, by, check_closed, check_fields, compare, device};
 use crate::common::stages;
 use crate::data;
 
@@ -34,8 +34,15 @@ fn open_and_broken_parts_have_the_same_crossings() {
 }
 
 #[test]
-fn drawn_prisms_give_the_exact_field() {
+fn the_fields_of_closed_meshes_are_the_exact_ones() {
     let (Some(data), Some(device)) = (data(), device()) else { return };
-    check_prisms(device, "knot", &data.mesh("clean/quadknot.obj"));
-    check_prisms(device, "fandisk", &data.mesh("clean/fandisk.off"));
+    for (name, mesh) in data.clean() {
+        check_fields(device, &name, &mesh);
+    }
+}
+
+#[test]
+fn the_field_of_the_open_bunny_is_the_exact_one() {
+    let (Some(data), Some(device)) = (data(), device()) else { return };
+    check_fields(device, "bunny", &data.mesh("broken/stanford-bunny.obj"));
 }

@@ -146,7 +146,7 @@ pub fn filtered(field: Shared, options: &FilterOptions) -> Result<Shared, Filter
     let stored = match options.distances {
         Distances::Asked => None,
         Distances::Interpolated { cells: 0, .. } => return Err(FilterError::Cells),
-        Distances::Interpolated { cells, memory } => Stored::new(field.clone(), cap / f64::from(cells), memory),
+        Distances::Interpolated { cells, memory } => Stored::new(&field, cap / f64::from(cells), memory),
     };
     Ok(Arc::new(Filtered { inner: field, stored, around: Around::new(options), cap, sign_safe: options.sign_safe }))
 }

@@ -1,13 +1,12 @@
 //! A field that is remembered: tiles of it, made where they are asked for.
 
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
 use glam::{DVec3, IVec3};
 use rustc_hash::FxHashMap;
 
 use super::tile::{CELLS, Tile};
-use crate::field::{Sample, Shared};
-use crate::lattice::Lattice;
+use crate::field::{Cubes, Sample, Shared};
 
 /// Parts of the memory that are locked one by one.
 const SHARDS: usize = 64;
@@ -17,7 +16,7 @@ const FARTHEST: f64 = (1 << 30) as f64;
 /// A field by interpolation. What it is at a place does not depend on what was asked before: tiles that find no room are
 /// forgotten, and made again when they are asked for.
 pub(super) struct Stored {
-    field: Shared,
+    cubes: Arc<dyn Cubes>,
     /// The edge of the cells, model units.
     edge: f64,
     shards: Vec<Shard>,
@@ -25,10 +24,13 @@ pub(super) struct Stored {
     most: usize,
 }
 
+/// A place for a tile: who comes while it is made waits for it.
+type Place = Arc<OnceLock<Option<Arc<Tile>>>>;
+
 /// All tiles take as much memory.
 #[derive(Default)]
 struct Shard {
-    tiles: RwLock<FxHashMap<IVec3, Arc<Tile>>>,
+    places: RwLock<FxHashMap<IVec3, Place>>,
 }
 
 /// The tiles that were met last: those around a point have places of their own.
@@ -45,10 +47,10 @@ impl Default for Recent {
 impl Stored {
     /// Ready to remember `field` in cells of this edge, model units, in `memory` bytes; nothing where the field has no
     /// quick way to tell its values over a lattice.
-    pub fn new(field: Shared, edge: f64, memory: u64) -> Option<Self> {
-        field.over(&Lattice { origin: DVec3::ZERO, h: edge, dims: IVec3::ONE })?;
+    pub fn new(field: &Shared, edge: f64, memory: u64) -> Option<Self> {
+        let cubes = field.over(DVec3::ZERO, edge)?;
         let most = usize::try_from(memory / SHARDS as u64).unwrap_or(usize::MAX);
-        Some(Self { field, edge, shards: std::iter::repeat_with(Shard::default).take(SHARDS).collect(), most })
+        Some(Self { cubes, edge, shards: std::iter::repeat_with(Shard::default).take(SHARDS).collect(), most })
     }
 
     /// How far a value between the points may be off where the field is nowhere steeper than a distance, model units: as far
@@ -86,28 +88,33 @@ impl Stored {
         place.as_ref().map(|(_, tile)| look(tile, at - low * f64::from(CELLS)))
     }
 
-    /// The tile of this number, made if it is not there. Two threads may make it at once; no lock is held meanwhile, since
-    /// the field may set other threads to work.
+    /// The tile of this number, made if it is not there.
     #[cold]
     fn tile(&self, key: IVec3) -> Option<Arc<Tile>> {
         let hash = (key.x.wrapping_mul(73) ^ key.y.wrapping_mul(179) ^ key.z.wrapping_mul(283)) as usize;
-        let shard = &self.shards[hash % SHARDS];
-        let known = shard.tiles.read().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
-        if known.is_some() {
+        self.place(&self.shards[hash % SHARDS], key)
+            .get_or_init(|| Tile::new(&self.cubes.cube(key)?).map(Arc::new))
+            .clone()
+    }
+
+    /// The place of a tile, one of a shard's if there is room for it.
+    fn place(&self, shard: &Shard, key: IVec3) -> Place {
+        let known = |places: &FxHashMap<IVec3, Place>| places.get(&key).cloned();
+        if let Some(known) = known(&shard.places.read().unwrap_or_else(PoisonError::into_inner)) {
             return known;
         }
-        let tile = Arc::new(Tile::new(&self.field, key, self.edge)?);
-        let bytes = tile.memory() + size_of::<(IVec3, Arc<Tile>)>();
-        let mut tiles = shard.tiles.write().unwrap_or_else(PoisonError::into_inner);
-        if let Some(known) = tiles.get(&key) {
-            return Some(known.clone());
+        let mut places = shard.places.write().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = known(&places) {
+            return known;
         }
-        if (tiles.len() + 1) * bytes > self.most {
-            tiles.clear();
+        let place = Place::default();
+        let bytes = Tile::MEMORY + size_of::<(IVec3, Place)>();
+        if (places.len() + 1) * bytes > self.most {
+            places.clear();
         }
         if bytes <= self.most {
-            tiles.insert(key, tile.clone());
+            places.insert(key, place.clone());
         }
-        Some(tile)
+        place
     }
 }

@@ -2,8 +2,7 @@
 
 use glam::{DVec3, IVec3};
 
-use crate::field::{Sample, Shared};
-use crate::lattice::Lattice;
+use crate::field::Sample;
 
 /// Cells along the side of a tile: with the points at both ends and one beyond each, 32 points, a whole number of bricks.
 pub(super) const CELLS: i32 = 29;
@@ -19,11 +18,8 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// The tile of number `key` of `field`, with this edge of the cells, model units; nothing where the field cannot tell.
-    pub fn new(field: &Shared, key: IVec3, edge: f64) -> Option<Self> {
-        let first = key.as_dvec3() * f64::from(CELLS) - 1.0;
-        let lattice = Lattice { origin: first * edge, h: edge, dims: IVec3::splat(CELLS + 3) };
-        let given = field.over(&lattice)?;
+    /// The tile of the values of a cube.
+    pub fn new(given: &[f32]) -> Option<Self> {
         let side = POINTS + 2;
         let steps = [1, side, side * side];
         let mut values = Vec::with_capacity(POINTS.pow(3));
@@ -36,10 +32,8 @@ impl Tile {
         Some(Self { values })
     }
 
-    /// Bytes of memory that it takes.
-    pub fn memory(&self) -> usize {
-        size_of::<Self>() + self.values.len() * size_of::<f32>()
-    }
+    /// Bytes of memory that one takes.
+    pub const MEMORY: usize = size_of::<Self>() + POINTS.pow(3) * size_of::<f32>();
 
     /// The values at the corners of the cell that holds a place, given in cells, and where in the cell that is.
     #[inline]

@@ -2,13 +2,14 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
-use super::super::facets::{FacetId, Facets, Side};
+use super::super::facets::{FacetId, Side};
 use super::super::surface::{rounded, shape};
 use crate::ldi::Evidence;
 use crate::mesh::edges::{Edges, Union, copies};
 use crate::mesh::weld::first_of_equal;
-use crate::mesh::{TriMesh, intersecting_triangles};
+use crate::mesh::{Bounds, TriMesh, intersecting_triangles};
 use crate::progress::{Progress, Stopped};
 
 /// The least height of a kept triangle, h.
@@ -20,20 +21,84 @@ const MOST_DROPPED: f64 = 0.02;
 /// The share of a patch's crossings that must bound the solid; the others are on silent rays.
 const LEAST_BOUNDING: f64 = 0.2;
 
-/// The source triangles that are kept.
+/// The source triangles that bound the solid as they are. The default is none.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Kept {
-    /// The source, its coordinates rounded to what any format holds.
-    pub mesh: TriMesh,
+pub struct Kept {
+    /// The source, its coordinates rounded to what any format holds, vertices at the same place joined.
+    pub(super) mesh: TriMesh,
     /// Whether a triangle is kept.
-    pub is: Vec<bool>,
+    pub(super) is: Vec<bool>,
     /// Whether the solid lies on the side of its normal.
-    pub reversed: Vec<bool>,
+    pub(super) reversed: Vec<bool>,
     /// Whether a triangle meets another one.
-    pub meets: Vec<bool>,
+    pub(super) meets: Vec<bool>,
+}
+
+/// Where triangles that are kept end, and with what.
+#[derive(Debug, Clone, Default)]
+pub struct Seams {
+    /// The triangles that are not kept, model units.
+    pub others: Vec<[DVec3; 3]>,
+    /// The edges between those that are kept and those that are not, or nothing, model units.
+    pub edges: Vec<[DVec3; 2]>,
+    /// For each connected part of the edges with one triangle, kept or not, the box around it, model units.
+    pub rims: Vec<Bounds>,
 }
 
 impl Kept {
+    /// Of the triangles of `source` those that meet no other and that, patch by patch, bound the solid by the word of the rays. A
+    /// patch has the solid on one side all over, unless it is open; so one word of all its rays will do, and where
+    /// they differ, what is near those that say no is left out and the rest asked again. `h` is the voxel spacing, model units.
+    ///
+    /// # Errors
+    /// Only where it was stopped.
+    pub fn of(source: &TriMesh, evidence: &Evidence, h: f64, progress: &Progress) -> Result<Self, Stopped> {
+        let mut kept = candidates(source, h, progress)?;
+        kept.is.iter_mut().zip(&evidence.changed).for_each(|(is, changed)| *is &= !changed);
+        let patches = Patches::new(&kept, evidence);
+        let mut torn = vec![false; kept.mesh.positions.len()];
+        for t in 0..kept.is.len() {
+            let tells_no = kept.is[t] && evidence.dropped(t) > 0 && !patches.verdict(t).bounds();
+            kept.mesh.triangles[t].iter().filter(|_| tells_no).for_each(|&v| torn[v as usize] = true);
+        }
+        for t in 0..kept.is.len() {
+            kept.is[t] &= patches.verdict(t).bounds() || kept.mesh.triangles[t].iter().all(|&v| !torn[v as usize]);
+        }
+        let patches = Patches::new(&kept, evidence);
+        for t in 0..kept.is.len() {
+            let verdict = patches.verdict(t);
+            kept.is[t] &= verdict.bounds();
+            kept.reversed[t] = verdict.bounding[1] > verdict.bounding[0];
+        }
+        Ok(kept)
+    }
+
+    /// Where the kept triangles end, once they are a manifold with a border.
+    pub fn seams(&self) -> Seams {
+        let mut tidy = self.clone();
+        tidy.tidy();
+        let Self { mesh, is, .. } = &tidy;
+        let edges = Edges::new(&mesh.triangles, mesh.positions.len());
+        let mut seams = Seams::default();
+        let mut rims = Union::new(mesh.positions.len());
+        let mut on_rims: Vec<u32> = Vec::new();
+        edges.each(|edge| {
+            let kept = edge.halves().filter(|&half| is[half as usize / 3]).count();
+            let Some(half) = edge.halves().next().map(|half| half as usize) else { return };
+            let ends = [half % 3, (half + 1) % 3].map(|k| mesh.triangles[half / 3][k]);
+            if kept == 1 || kept > 0 && edge.count() > 2 {
+                seams.edges.push(ends.map(|v| mesh.positions[v as usize]));
+            }
+            if edge.count() == 1 {
+                rims.join(ends[0], ends[1]);
+                on_rims.extend(ends);
+            }
+        });
+        seams.rims = boxes(&mesh.positions, &mut rims, &on_rims);
+        seams.others = (0..is.len()).filter(|&t| !is[t]).map(|t| mesh.corners(t)).collect();
+        seams
+    }
+
     /// The corners of a triangle in the order in which they run around the solid's outside.
     pub(super) fn corners(&self, facet: u32) -> [u32; 3] {
         let [a, b, c] = self.mesh.triangles[facet as usize];
@@ -80,28 +145,19 @@ impl Kept {
     }
 }
 
-/// The triangles that meet no other and that, patch by patch, bound the solid by the word of the rays. A
-/// patch has the solid on one side all over, unless it is open; so one word of all its rays will do, and where
-/// they differ, what is near those that say no is left out and the rest asked again.
-pub(super) fn chosen(facets: &Facets<'_>, evidence: &Evidence, h: f64, progress: &Progress) -> Result<Kept, Stopped> {
-    let mut kept = candidates(facets.mesh(), h, progress)?;
-    kept.is.iter_mut().zip(&evidence.changed).for_each(|(is, changed)| *is &= !changed);
-    let patches = Patches::new(&kept, evidence);
-    let mut torn = vec![false; kept.mesh.positions.len()];
-    for t in 0..kept.is.len() {
-        let tells_no = kept.is[t] && evidence.dropped(t) > 0 && !patches.verdict(t).bounds();
-        kept.mesh.triangles[t].iter().filter(|_| tells_no).for_each(|&v| torn[v as usize] = true);
+/// The boxes around the connected parts of `vertices`, in the order of their first vertices.
+fn boxes(positions: &[DVec3], parts: &mut Union, vertices: &[u32]) -> Vec<Bounds> {
+    let mut number: FxHashMap<u32, usize> = FxHashMap::default();
+    let mut boxes: Vec<Bounds> = Vec::new();
+    for &v in vertices {
+        let p = positions[v as usize];
+        let n = *number.entry(parts.root(v)).or_insert(boxes.len());
+        match boxes.get_mut(n) {
+            Some(all) => (all.min, all.max) = (all.min.min(p), all.max.max(p)),
+            None => boxes.push(Bounds { min: p, max: p }),
+        }
     }
-    for t in 0..kept.is.len() {
-        kept.is[t] &= patches.verdict(t).bounds() || kept.mesh.triangles[t].iter().all(|&v| !torn[v as usize]);
-    }
-    let patches = Patches::new(&kept, evidence);
-    for t in 0..kept.is.len() {
-        let verdict = patches.verdict(t);
-        kept.is[t] &= verdict.bounds();
-        kept.reversed[t] = verdict.bounding[1] > verdict.bounding[0];
-    }
-    Ok(kept)
+    boxes
 }
 
 /// The triangles that have an area and meet no other. Of several copies of a triangle the first is one; vertices at the

@@ -20,11 +20,10 @@ use super::cut::Cut;
 use super::facets::Facets;
 use super::surface::{Surface, shape};
 use super::{mend, safeguard};
-use crate::ldi::Evidence;
 use crate::mesh::{HalfEdges, Shape};
 use crate::progress::{Progress, Stopped};
 use border::Border;
-use choose::Kept;
+pub use choose::{Kept, Seams};
 use stitch::{Joined, Misfit, joined};
 
 /// Times that triangles are let go. Real meshes take up to 20.
@@ -43,15 +42,15 @@ const PATIENCE: (usize, usize) = (6, 36);
 const CLEARANCE: f64 = 1.5;
 
 /// The surface with source triangles in place of the contour wherever that can be, and the number of them. `initial`
-/// must be valid; `evidence` is what the rays say of the facets.
+/// must be valid; `kept` are those that bound the solid by the word of the rays.
 pub(super) fn keep(
     initial: &Surface,
     facets: &Facets<'_>,
-    evidence: &Evidence,
+    kept: &Kept,
     h: f64,
     progress: &Progress,
 ) -> Result<(Surface, usize), Stopped> {
-    let mut kept = choose::chosen(facets, evidence, h, progress)?;
+    let mut kept = kept.clone();
     near(&kept, &meeting_places(initial, &kept), CLEARANCE * h).into_iter().for_each(|t| kept.is[t as usize] = false);
     let mut trouble = Trouble::default();
     for _ in 0..MOST_ROUNDS {

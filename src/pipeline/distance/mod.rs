@@ -10,7 +10,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::backend::{self, BackendReport, PrismError};
+use crate::backend::{self, FieldError};
 use crate::digits;
 use crate::lattice::{BRICK, DistanceField, Lattice, Slot};
 use crate::ldi::{Expression, MAX_VOXELS};
@@ -71,7 +71,7 @@ pub struct DistanceReport {
     /// The votes, where there were any.
     pub vote: Option<VoteReport>,
     /// Which processor made the field, where there is a choice.
-    pub made_by: Option<BackendReport>,
+    pub made_by: Option<backend::BackendReport>,
     /// Wall-clock time of each stage, in order. Not written with the rest, as in [`super::Report::stages`].
     #[serde(skip)]
     pub stages: Vec<StageTime>,
@@ -125,7 +125,7 @@ pub fn distance(
     let field = match (options.method, options.sign) {
         (DistanceMethod::Exact, DistanceSign::Pseudonormal) => {
             stages.begin(Stage::Distance)?;
-            run.exact(input, Sign::Pseudonormal)?
+            run.exact(input, Sign::Pseudonormal, &mut report)?
         }
         (DistanceMethod::Characteristics, _) => {
             stages.begin(Stage::Distance)?;
@@ -133,9 +133,7 @@ pub fn distance(
         }
         (DistanceMethod::Prism, _) => {
             stages.begin(Stage::Distance)?;
-            let (field, made_by) = run.prism(input)?;
-            report.made_by = Some(made_by);
-            field
+            run.prism(input)?
         }
         _ => run.of_soup(input, &mut stages, &mut report)?,
     };
@@ -224,9 +222,20 @@ struct Making<'a> {
 }
 
 impl Making<'_> {
-    fn exact(&self, mesh: &TriMesh, sign: Sign<'_>) -> Result<DistanceField, DistanceError> {
+    fn exact(
+        &self,
+        mesh: &TriMesh,
+        sign: Sign<'_>,
+        report: &mut DistanceReport,
+    ) -> Result<DistanceField, DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
-        Ok(exact::exact(mesh, &self.lattice, sign, &options, self.progress)?)
+        let made = backend::exact(mesh, &self.lattice, sign, &options, self.options.backend, self.progress);
+        let (field, made_by) = made.map_err(|error| match error {
+            FieldError::Field(error) => error.into(),
+            FieldError::Gpu { reason, hint } => DistanceError::Device { reason, hint },
+        })?;
+        report.made_by = Some(made_by);
+        Ok(field)
     }
 
     fn characteristics(&self, mesh: &TriMesh) -> Result<DistanceField, DistanceError> {
@@ -234,13 +243,9 @@ impl Making<'_> {
         Ok(characteristics::characteristics(mesh, &self.lattice, &options, self.progress)?)
     }
 
-    fn prism(&self, mesh: &TriMesh) -> Result<(DistanceField, BackendReport), DistanceError> {
+    fn prism(&self, mesh: &TriMesh) -> Result<DistanceField, DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
-        let made = backend::prism(mesh, &self.lattice, &options, self.options.backend, self.progress);
-        made.map_err(|error| match error {
-            PrismError::Field(error) => error.into(),
-            PrismError::Gpu { reason, hint } => DistanceError::Device { reason, hint },
-        })
+        Ok(sdf::prism::prism(mesh, &self.lattice, &options, self.progress)?)
     }
 
     /// By way of orientation, rays and votes.
@@ -261,14 +266,14 @@ impl Making<'_> {
             (DistanceMethod::Exact, DistanceSign::Winding) => {
                 cast.layers.clear();
                 stages.begin(Stage::Distance)?;
-                return self.exact(&cast.soup.mesh, Sign::Winding(&cast.winding(progress), &expression));
+                return self.exact(&cast.soup.mesh, Sign::Winding(&cast.winding(progress), &expression), report);
             }
             (DistanceMethod::Exact, DistanceSign::Levels) => {
                 cast.layers.clear();
                 stages.begin(Stage::Levels)?;
                 let levels = Levels::of(&cast.soup.mesh, lattice, self.options.inside, progress)?;
                 stages.begin(Stage::Distance)?;
-                return self.exact(&cast.soup.mesh, Sign::Levels(&levels));
+                return self.exact(&cast.soup.mesh, Sign::Levels(&levels), report);
             }
             _ => {}
         }
@@ -281,7 +286,7 @@ impl Making<'_> {
         stages.begin(Stage::Distance)?;
         match self.options.method {
             DistanceMethod::Exact | DistanceMethod::Characteristics | DistanceMethod::Prism => {
-                self.exact(&survey.soup.mesh, Sign::Votes(&votes))
+                self.exact(&survey.soup.mesh, Sign::Votes(&votes), report)
             }
             DistanceMethod::Robust => {
                 let (options, planes) = (RobustOptions::default(), survey.planes());

@@ -18,7 +18,7 @@ pub enum DistanceMethod {
     /// The same by characteristics and scan conversion: for closed, oriented meshes and
     /// [`DistanceSign::Pseudonormal`] only. A reference to compare with.
     Characteristics,
-    /// The same by scan conversion of a prism for every triangle, on either processor: for closed, oriented meshes and
+    /// The same by scan conversion of a prism for every triangle: for closed, oriented meshes and
     /// [`DistanceSign::Pseudonormal`] only.
     Prism,
     /// The pipelines' own field: smooth where the surface is broken, extended by fast marching.
@@ -79,7 +79,7 @@ pub struct DistanceOptions {
     /// What tells inside from outside; [`DistanceMethod::Robust`] goes by the votes always,
     /// [`DistanceMethod::Characteristics`] and [`DistanceMethod::Prism`] by pseudonormals.
     pub sign: DistanceSign,
-    /// Which processor makes the field of prisms; the others are made by the main one.
+    /// Which processor makes the exact field; the others are made by the main one.
     pub backend: Backend,
     /// Orientation of the input, unless the sign is by pseudonormals.
     pub orient: OrientMode,

@@ -21,8 +21,8 @@ use crate::contour::Ground;
 use crate::digits;
 use crate::field::language::{self, BuildError};
 use crate::field::{Field, FillError, FillOptions, LevelError, Shared, fill, level};
-use crate::fit::{Facets, fit};
-use crate::ldi::{Evidence, MAX_VOXELS};
+use crate::fit::{Facets, Kept, fit};
+use crate::ldi::MAX_VOXELS;
 use crate::mesh::{Bounds, IndexError, NotSolid, SolidError};
 use crate::progress::{Progress, Stage, Stopped};
 use crate::sdf::exact::Band;
@@ -140,7 +140,7 @@ pub fn field_surface(
     if let Some(options) = options.fit {
         stages.begin(Stage::Fit)?;
         let options = crate::fit::FitOptions { rebuild: true, ..options };
-        let (fit, report) = fit(&surface, &facets, &Evidence::default(), lattice.h, &options, progress)?;
+        let (fit, report) = fit(&surface, &facets, &Kept::default(), lattice.h, &options, progress)?;
         (surface, fitted) = (fit, Some(report));
     }
     let source = |t: u32| sources.origin(surface.facet(&facets, t).and_then(|facet| facets.triangle(facet)));

@@ -48,7 +48,7 @@ pub fn characteristics(
     exact::whole(mesh, lattice, Sign::Pseudonormal, options, needed, progress, |scope| {
         let features = Features::of(mesh, lattice, scope.band);
         progress.check()?;
-        scan::bricks(&features, scope, progress)
+        Ok(scan::bricks(&features, scope, progress)?)
     })
 }
 

@@ -10,7 +10,7 @@ use crate::mesh::weld::welded_triangles;
 use crate::mesh::{Pseudonormals, TriMesh};
 
 /// Half-spaces a vertex keeps, at most; leaving some out makes its region larger, which costs time only.
-pub(in crate::sdf) const MOST_SIDES: usize = 8;
+pub(super) const MOST_SIDES: usize = 8;
 /// A triangle lower than this, in h, has no face of its own: its edges are as near.
 const LOWEST: f64 = 1e-5;
 /// An edge whose region is narrower than this, in h, at the end of the band lies within what counts as over its faces, see
@@ -19,7 +19,7 @@ const NARROWEST: f64 = 1e-10;
 
 /// The open side of a triangle. Lattice coordinates, as everything here.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::sdf) struct FaceFeature {
+pub(crate) struct FaceFeature {
     pub corners: [DVec3; 3],
     /// Unit normal.
     pub normal: DVec3,
@@ -29,7 +29,7 @@ pub(in crate::sdf) struct FaceFeature {
 
 /// An edge between two vertices.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::sdf) struct EdgeFeature {
+pub(crate) struct EdgeFeature {
     pub start: DVec3,
     /// Unit vector to the other end.
     pub along: DVec3,
@@ -42,7 +42,7 @@ pub(in crate::sdf) struct EdgeFeature {
 
 /// A vertex.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::sdf) struct VertexFeature {
+pub(crate) struct VertexFeature {
     pub at: DVec3,
     /// Unit pseudonormal, or zero.
     pub normal: DVec3,
@@ -54,11 +54,11 @@ pub(in crate::sdf) struct VertexFeature {
 const ROUNDING: f64 = 1e-9;
 
 /// The square of a distance in h, and on which side of the surface the point is: negative inside.
-pub(in crate::sdf) type Measured = (f64, f64);
+pub(crate) type Measured = (f64, f64);
 
 impl FaceFeature {
     /// `None` where the foot of the perpendicular from `p` is not on the face.
-    pub(in crate::sdf) fn measure(&self, p: DVec3) -> Option<Measured> {
+    pub(crate) fn measure(&self, p: DVec3) -> Option<Measured> {
         let over = (0..3).all(|k| self.inner[k].dot(p - self.corners[k]) >= -ROUNDING);
         let side = self.normal.dot(p - self.corners[0]);
         over.then_some((side * side, side))
@@ -66,7 +66,20 @@ impl FaceFeature {
 }
 
 impl EdgeFeature {
-    pub(in crate::sdf) fn measure(&self, p: DVec3) -> Option<Measured> {
+    /// Whether the pseudonormal says nothing.
+    pub(crate) fn is_blind(&self) -> bool {
+        self.normal == DVec3::ZERO
+    }
+
+    /// Two unit vectors square to the edge and to each other, the first along the pseudonormal where that says anything.
+    pub(crate) fn across(&self) -> [DVec3; 2] {
+        let first = if self.is_blind() { self.along.any_orthonormal_vector() } else { self.normal };
+        // The pseudonormal is square to the edge but for rounding.
+        let first = (first - self.along * first.dot(self.along)).normalize_or_zero();
+        [first, self.along.cross(first)]
+    }
+
+    pub(crate) fn measure(&self, p: DVec3) -> Option<Measured> {
         let from = p - self.start;
         let along = self.along.dot(from);
         let between = along >= -ROUNDING && along <= self.length + ROUNDING;
@@ -75,7 +88,7 @@ impl EdgeFeature {
 }
 
 impl VertexFeature {
-    pub(in crate::sdf) fn measure(&self, p: DVec3) -> Option<Measured> {
+    pub(crate) fn measure(&self, p: DVec3) -> Option<Measured> {
         let from = p - self.at;
         Some((from.length_squared(), self.normal.dot(from)))
     }
@@ -83,7 +96,7 @@ impl VertexFeature {
 
 /// All that can be nearest to a point within the band.
 #[derive(Debug, Default)]
-pub(in crate::sdf) struct Features {
+pub(crate) struct Features {
     pub faces: Vec<FaceFeature>,
     pub edges: Vec<EdgeFeature>,
     pub vertices: Vec<VertexFeature>,
@@ -91,25 +104,24 @@ pub(in crate::sdf) struct Features {
 
 impl Features {
     /// Of `mesh`, in the coordinates of `lattice`, as far as they matter within `reach` (h).
-    pub(in crate::sdf) fn of(mesh: &TriMesh, lattice: &Lattice, reach: f64) -> Self {
+    pub(crate) fn of(mesh: &TriMesh, lattice: &Lattice, reach: f64) -> Self {
         let triangles = welded_triangles(mesh);
         let all_edges = Edges::new(&triangles, mesh.positions.len());
         let normals = &Pseudonormals::over(mesh, &triangles, &all_edges);
         let positions: Vec<DVec3> = mesh.positions.par_iter().map(|&p| lattice.to_lattice(p)).collect();
         let faces: Vec<Option<FaceFeature>> =
             triangles.par_iter().map(|t| face(t.map(|v| positions[v as usize]))).collect();
-        let mut raw = Vec::with_capacity(3 * triangles.len() / 2);
-        all_edges.each(|edge| raw.push(RawEdge::new(&edge, &faces)));
+        let raw = all_edges.map(|edge| RawEdge::new(&edge, &faces));
         let (edges, ends): (Vec<Option<EdgeFeature>>, Vec<Option<End>>) =
             raw.par_iter().map(|raw| raw.edge(&positions, &faces, normals, reach)).unzip();
-        let edges = edges.into_iter().flatten().collect();
-        let ends: Vec<End> = ends.into_iter().flatten().collect();
+        let edges = edges.into_par_iter().flatten_iter().collect();
+        let ends: Vec<End> = ends.into_par_iter().flatten_iter().collect();
         let vertices = vertices(&triangles, &positions, normals, &ends);
-        Self { faces: faces.into_iter().flatten().collect(), edges, vertices }
+        Self { faces: faces.into_par_iter().flatten_iter().collect(), edges, vertices }
     }
 
     /// The signed distance of `p` in h from the nearest of some features, given by their numbers.
-    pub(super) fn signed(
+    pub(crate) fn signed(
         &self,
         p: DVec3,
         faces: impl Iterator<Item = u32>,

@@ -6,6 +6,7 @@
 //! they meet and that can be nearest to one of their points; the few that are left are measured at all eight voxels at
 //! once, in single precision about the tile's centre. Where that cannot tell the side of a voxel, double precision does.
 
+mod blocks;
 mod cost;
 mod descend;
 mod feature;
@@ -21,6 +22,7 @@ use std::sync::Arc;
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
+pub use blocks::BlockDistance;
 pub use cost::{Cost, cost};
 pub use of_solid::SolidDistance;
 pub use point::{ExactDistance, Nearest, PointSign};
@@ -32,9 +34,9 @@ use crate::mesh::{Bounds, TriMesh};
 use crate::progress::{Progress, Stopped};
 use crate::sdf::Levels;
 use crate::vote::{Votes, Winding};
-pub(in crate::sdf) use descend::Filled;
-pub(in crate::sdf) use feature::{EdgeFeature, FaceFeature, Features, Measured, VertexFeature};
-pub(in crate::sdf) use tiles::{MARGIN, Region, Scope};
+pub(crate) use descend::Filled;
+pub(crate) use feature::{EdgeFeature, FaceFeature, Features, Measured, VertexFeature};
+pub(crate) use tiles::{MARGIN, Region, Scope};
 
 /// Voxels along an axis, at most.
 const MOST_VOXELS: i32 = 1 << 15;
@@ -123,20 +125,20 @@ pub fn exact(
     whole(mesh, lattice, sign, options, needed, progress, |scope| {
         let features = Features::of(mesh, lattice, scope.band);
         progress.check()?;
-        tiles::bricks(&features, scope, progress)
+        Ok(tiles::bricks(&features, scope, progress)?)
     })
 }
 
 /// The field whose bricks `bricks` finds, which takes `needed` bytes: checked before, and given its sides after.
-pub(in crate::sdf) fn whole(
+pub(crate) fn whole<E: From<ExactError>>(
     mesh: &TriMesh,
     lattice: &Lattice,
     sign: Sign<'_>,
     options: &ExactOptions,
     needed: u64,
     progress: &Progress,
-    bricks: impl FnOnce(&Scope) -> Result<Vec<Filled>, Stopped>,
-) -> Result<DistanceField, ExactError> {
+    bricks: impl FnOnce(&Scope) -> Result<Vec<Filled>, E>,
+) -> Result<DistanceField, E> {
     let scope = checked_scope(mesh, lattice, options, needed)?;
     let mut raw = assemble(bricks(&scope)?, &scope);
     sides::settle(&mut raw, mesh, lattice, sign, progress)?;

@@ -162,11 +162,7 @@ pub(super) struct LocalEdge {
 
 impl LocalEdge {
     pub(super) fn new(edge: &EdgeFeature, centre: DVec3) -> Self {
-        let blind = edge.normal == DVec3::ZERO;
-        let first = if blind { edge.along.any_orthonormal_vector() } else { edge.normal };
-        // The pseudonormal is square to the edge but for rounding.
-        let first = (first - edge.along * first.dot(edge.along)).normalize_or_zero();
-        let across = [first, edge.along.cross(first)].map(|v| plane(v, edge.start, centre));
+        let across = edge.across().map(|v| plane(v, edge.start, centre));
         let along = plane(edge.along, edge.start, centre);
         let sides = edge.sides.map(|side| plane(-side, edge.start, centre));
         Self {
@@ -175,7 +171,7 @@ impl LocalEdge {
             length: edge.length as f32,
             sides,
             growth: [growth(along), growth(sides[0]), growth(sides[1])],
-            blind: if blind { f32::INFINITY } else { 0.0 },
+            blind: if edge.is_blind() { f32::INFINITY } else { 0.0 },
         }
     }
 }

@@ -8,7 +8,7 @@ use super::feature::{EdgeFeature, FaceFeature, Features, VertexFeature};
 use crate::progress::{Progress, Stopped};
 
 /// Regions are larger by this, in h.
-pub(in crate::sdf) const MARGIN: f64 = 1e-3;
+pub(crate) const MARGIN: f64 = 1e-3;
 /// Where faces bend less than by this sine, rounding may turn the direction in which they do.
 const SLIGHT: f64 = 1e-6;
 /// Features that one task sorts into blocks.
@@ -18,7 +18,7 @@ const MOST_BLOCKS: i32 = 128;
 
 /// The lattice in voxels, and the width of the band.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::sdf) struct Scope {
+pub(crate) struct Scope {
     /// The voxels after the last.
     pub end: IVec3,
     /// In h; finite.
@@ -27,9 +27,9 @@ pub(in crate::sdf) struct Scope {
 
 /// A cube of voxels.
 #[derive(Debug, Clone, Copy)]
-struct Block {
-    base: IVec3,
-    size: i32,
+pub(super) struct Block {
+    pub base: IVec3,
+    pub size: i32,
 }
 
 impl Block {
@@ -37,7 +37,7 @@ impl Block {
         0.5 * f64::from(self.size - 1)
     }
 
-    fn centre(self) -> DVec3 {
+    pub fn centre(self) -> DVec3 {
         self.base.as_dvec3() + self.half()
     }
 
@@ -48,7 +48,7 @@ impl Block {
 }
 
 /// What a feature is to a block.
-pub(in crate::sdf) struct Seen {
+pub(crate) struct Seen {
     /// A lower bound of its distance from the centre, h.
     least: f64,
     /// Its distance from the centre where it is certain, else infinite.
@@ -56,7 +56,7 @@ pub(in crate::sdf) struct Seen {
 }
 
 /// A feature whose region may meet a block.
-pub(in crate::sdf) trait Region: Sync {
+pub(crate) trait Region: Sync {
     /// What it is to the block of half-width `half` around `centre`; `None` where its region lies outside.
     fn seen(&self, centre: DVec3, half: f64) -> Option<Seen>;
     /// The box around the part of the region within `band`.
@@ -182,7 +182,7 @@ fn halve(
 }
 
 /// Those of `lists` that can be nearest to a voxel of `block`.
-fn lists_of(block: &Block, lists: &Lists, features: &Features, scope: &Scope) -> Lists {
+pub(super) fn lists_of(block: &Block, lists: &Lists, features: &Features, scope: &Scope) -> Lists {
     let (centre, half) = (block.centre(), block.half());
     let faces = seen(&features.faces, &lists.faces, centre, half);
     let edges = seen(&features.edges, &lists.edges, centre, half);

@@ -2,8 +2,7 @@
 //!
 //! Every triangle has a [`Frustum`] on either side that holds whatever is nearest to it, its sides and corners included. Slices
 //! along z cut these into convex polygons ([`Table`]); at each voxel of a polygon the exact distance to the triangle is
-//! computed in its own frame ([`TriangleFrame`]), and the smallest in absolute value stays. Here this is done on the processor, as the
-//! twin of what the graphics processor draws where that is built in: same prisms, same polygons, same distances.
+//! computed in its own frame ([`TriangleFrame`]), and the smallest in absolute value stays.
 
 mod frame;
 mod frustum;
