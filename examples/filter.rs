@@ -63,7 +63,7 @@ fn interpolated(paths: &[String]) -> Result<(), Box<dyn Error>> {
                 Ok((field_values(&field, &points), started.elapsed().as_secs_f64()))
             };
             let (truth, slow) = values(Distances::Asked)?;
-            for cells in [8, 16, 32] {
+            for cells in [16, 24, 32] {
                 let (found, quick) = values(Distances::interpolated(cells))?;
                 let mut off: Vec<f64> = found.iter().zip(&truth).map(|(a, b)| (a - b).abs() / cap).collect();
                 off.sort_by(f64::total_cmp);
