@@ -1,13 +1,15 @@
-//! Measures the convolution filter: how it converges, what a packet saves, and what becomes of creases.
+//! Measures the convolution filter: how it converges, what a packet saves, what becomes of creases, and how far
+//! interpolated distances are off.
 //!
-//! `cargo run --release --example filter -- MESH`
+//! `cargo run --release --example filter -- MESH...`: the first of the meshes for all of it, the others for the last.
+//! With `--interpolated` before them only the last is measured.
 
 use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
-use meshwright::field::filter::{Adaptive, FilterOptions, Kernel, Sampling, WIDEST, filtered};
+use meshwright::field::filter::{Adaptive, Distances, FilterOptions, Kernel, Sampling, WIDEST, filtered};
 use meshwright::field::{Body, MeshField, Shared, Solid, scattered};
 use meshwright::io;
 use meshwright::mesh::Bounds;
@@ -18,11 +20,17 @@ use meshwright::sdf::exact::{ExactDistance, PointSign};
 const REFERENCE: usize = 1 << 14;
 /// Points at which values are compared.
 const POINTS: usize = 200;
+/// Points at which interpolated distances are compared.
+const COMPARED: usize = 10_000;
 /// Points at which times are taken.
 const TIMED: usize = 1600;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let path = std::env::args().nth(1).ok_or("the name of a mesh is wanted")?;
+    let mut paths: Vec<String> = std::env::args().skip(1).collect();
+    if paths.first().is_some_and(|first| first == "--interpolated") {
+        return interpolated(&paths.split_off(1));
+    }
+    let path = paths.first().cloned().ok_or("the name of a mesh is wanted")?;
     let mesh = io::read(&path)?.mesh;
     let bounds = mesh.bounds().ok_or("the mesh is empty")?;
     let cap = 0.05 * bounds.diagonal();
@@ -33,7 +41,42 @@ fn main() -> Result<(), Box<dyn Error>> {
     convergence(&path, &field, &bounds, cap)?;
     let distance = ExactDistance::of(&mesh, PointSign::Pseudonormal);
     rate(&distance, &field, &bounds, cap)?;
-    creases(&cube, 0.1)
+    creases(&cube, 0.1)?;
+    interpolated(&paths)
+}
+
+/// How far filtered values by interpolated distances are from those by distances that are asked for, over the cap.
+fn interpolated(paths: &[String]) -> Result<(), Box<dyn Error>> {
+    println!("\n| mesh | cap, of the diagonal | cells | mean | 99.9 % | greatest | times as fast |");
+    println!("|---|---|---|---|---|---|---|");
+    for path in paths {
+        let mesh = io::read(path)?.mesh;
+        let bounds = mesh.bounds().ok_or("the mesh is empty")?;
+        let field: Shared = Arc::new(MeshField::new(&mesh, PointSign::Pseudonormal, 0));
+        for share in [0.02, 0.035, 0.07] {
+            let cap = share * bounds.diagonal();
+            let near = Bounds { min: bounds.min - 2.0 * cap, max: bounds.max + 2.0 * cap };
+            let points = scattered(COMPARED, 5, &near);
+            let values = |distances| -> Result<(Vec<f64>, f64), Box<dyn Error>> {
+                let field = filtered(field.clone(), &FilterOptions { distances, ..FilterOptions::new(cap) })?;
+                let started = Instant::now();
+                Ok((field_values(&field, &points), started.elapsed().as_secs_f64()))
+            };
+            let (truth, slow) = values(Distances::Asked)?;
+            for cells in [16, 24, 32] {
+                let (found, quick) = values(Distances::interpolated(cells))?;
+                let mut off: Vec<f64> = found.iter().zip(&truth).map(|(a, b)| (a - b).abs() / cap).collect();
+                off.sort_by(f64::total_cmp);
+                let (mean, last) = (off.iter().sum::<f64>() / off.len() as f64, off.len() - 1);
+                let (most, nearly) = (off[last], off[last * 999 / 1000]);
+                println!(
+                    "| {path} | {share} | {cells} | {mean:.2e} | {nearly:.2e} | {most:.2e} | {:.1} |",
+                    slow / quick
+                );
+            }
+        }
+    }
+    Ok(())
 }
 
 fn drawn(count: usize, mirrored: bool) -> Sampling {
@@ -45,7 +88,14 @@ fn convergence(name: &str, field: &Shared, bounds: &Bounds, cap: f64) -> Result<
     let points = scattered(POINTS, 1, bounds);
     let values = |sampling, kernel, adaptive| -> Result<Vec<f64>, Box<dyn Error>> {
         let sign_safe = matches!(kernel, Kernel::Gaussian { .. });
-        let options = FilterOptions { sampling, kernel, adaptive, sign_safe, ..FilterOptions::new(cap) };
+        let options = FilterOptions {
+            sampling,
+            kernel,
+            adaptive,
+            sign_safe,
+            distances: Distances::Asked,
+            ..FilterOptions::new(cap)
+        };
         let field = filtered(field.clone(), &options)?;
         Ok(field_values(&field, &points))
     };
@@ -87,8 +137,10 @@ fn rate(distance: &ExactDistance, field: &Shared, bounds: &Bounds, cap: f64) -> 
     println!("| samples | us | over as many single queries of the same points |");
     println!("|---|---|---|");
     for count in [32, 64, 92, 256] {
-        let field =
-            filtered(field.clone(), &FilterOptions { sampling: drawn(count, true), ..FilterOptions::new(cap) })?;
+        let field = filtered(
+            field.clone(),
+            &FilterOptions { sampling: drawn(count, true), distances: Distances::Asked, ..FilterOptions::new(cap) },
+        )?;
         let started = Instant::now();
         field.values(&points, &mut values);
         let packet = started.elapsed().as_secs_f64() / TIMED as f64;

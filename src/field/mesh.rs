@@ -1,12 +1,13 @@
 //! The distance to a mesh as a field.
 
 use std::cell::RefCell;
+use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec3, IVec3};
 
-use super::{Ball, Extent, Field, Range, Sample, SourceTriangle};
+use super::{Ball, Cubes, Extent, Field, Range, Sample, SourceTriangle};
 use crate::mesh::{Bounds, TriMesh};
-use crate::sdf::exact::{ExactDistance, Nearest, PointSign};
+use crate::sdf::exact::{BlockDistance, ExactDistance, Nearest, PointSign};
 
 thread_local! {
     /// Room for the nearest points of a packet.
@@ -18,12 +19,15 @@ pub struct MeshField {
     distance: ExactDistance,
     bounds: Option<Bounds>,
     source: u32,
+    /// The mesh, where its pseudonormals tell the side.
+    mesh: Option<TriMesh>,
 }
 
 impl MeshField {
     /// The distance to `mesh`, which is number `source` of the meshes that a field is made of.
     pub fn new(mesh: &TriMesh, sign: PointSign, source: u32) -> Self {
-        Self { distance: ExactDistance::of(mesh, sign), bounds: mesh.bounds(), source }
+        let kept = matches!(sign, PointSign::Pseudonormal).then(|| mesh.clone());
+        Self { distance: ExactDistance::of(mesh, sign), bounds: mesh.bounds(), source, mesh: kept }
     }
 
     fn each(&self, points: &[DVec3], mut take: impl FnMut(usize, Option<&Nearest>)) {
@@ -31,6 +35,20 @@ impl MeshField {
             self.distance.packet(points, nearest);
             (0..points.len()).for_each(|k| take(k, nearest.get(k)));
         });
+    }
+}
+
+/// The distance to a mesh over a lattice of spacing `h`, model units.
+struct MeshCubes {
+    distance: BlockDistance,
+    h: f64,
+}
+
+impl Cubes for MeshCubes {
+    fn cube(&self, cube: IVec3) -> Option<Vec<f32>> {
+        let mut values = self.distance.cube(cube)?;
+        values.iter_mut().for_each(|value| *value = (f64::from(*value) * self.h) as f32);
+        Some(values)
     }
 }
 
@@ -47,6 +65,11 @@ impl Field for MeshField {
 
     fn range(&self, ball: &Ball) -> Range {
         Range::around(self.value(ball.centre), ball.radius)
+    }
+
+    fn over(&self, origin: DVec3, h: f64) -> Option<Arc<dyn Cubes>> {
+        let distance = BlockDistance::of(self.mesh.as_ref()?, origin, h)?;
+        Some(Arc::new(MeshCubes { distance, h }))
     }
 
     fn lipschitz(&self) -> f64 {

@@ -10,7 +10,7 @@
 //!
 //! ```
 //! use std::sync::Arc;
-//! use glam::DVec3;
+//! use glam::{DVec3, IVec3};
 //! use meshwright::field::{Body, Field, Shared, Solid, algebra, blend};
 //!
 //! let ball = |x| -> Shared {
@@ -41,7 +41,7 @@ use std::sync::Arc;
 
 pub use combined::{Combined, Rule, Slope};
 pub use fill::{FillError, FillOptions, fill};
-use glam::DVec3;
+use glam::{DVec3, IVec3};
 pub use level::{Level, LevelError, level};
 pub use material::material;
 pub use mesh::MeshField;
@@ -50,6 +50,13 @@ pub use points::{PointField, scattered};
 pub use range::{Ball, Extent, Range};
 pub use sampled::{Sampled, blur_band, blurred};
 pub use solids::{Body, Solid};
+
+/// The values of a field over a lattice without an end.
+pub trait Cubes: Send + Sync {
+    /// The values, model units, at the 32³ points from `29 cube - 1` on, lattice coordinates, x fastest, then y; they may be off by 1e-3 of the spacing. `None` where they
+    /// are not known. What they are depends on nothing that was asked before.
+    fn cube(&self, cube: IVec3) -> Option<Vec<f32>>;
+}
 
 /// A field that others can be made of.
 pub type Shared = Arc<dyn Field>;
@@ -95,6 +102,12 @@ pub trait Field: Send + Sync {
     /// model units, and unchanged by what was done to the mesh.
     fn source_triangle(&self, p: DVec3, within: f64) -> Option<SourceTriangle> {
         let _ = (p, within);
+        None
+    }
+
+    /// A way to tell the values at the points `origin + h v`, model units, cube by cube, if there is one that is much quicker than [`Self::values`].
+    fn over(&self, origin: DVec3, h: f64) -> Option<Arc<dyn Cubes>> {
+        let _ = (origin, h);
         None
     }
 

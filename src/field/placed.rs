@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, IVec3};
 
-use super::{Ball, Extent, Field, Range, Sample, Shared};
+use super::{Ball, Cubes, Extent, Field, Range, Sample, Shared};
 use crate::mesh::Bounds;
 
 /// A similarity: turned about the origin, made larger, then moved.
@@ -67,6 +67,20 @@ impl Placed {
     }
 }
 
+/// Values that are made larger.
+struct Scaled {
+    cubes: Arc<dyn Cubes>,
+    scale: f64,
+}
+
+impl Cubes for Scaled {
+    fn cube(&self, cube: IVec3) -> Option<Vec<f32>> {
+        let mut values = self.cubes.cube(cube)?;
+        values.iter_mut().for_each(|value| *value = (f64::from(*value) * self.scale) as f32);
+        Some(values)
+    }
+}
+
 impl Field for Placed {
     fn values(&self, points: &[DVec3], values: &mut [f64]) {
         self.field.values(&self.places(points), values);
@@ -84,6 +98,15 @@ impl Field for Placed {
     fn range(&self, ball: &Ball) -> Range {
         let (centre, radius) = (self.placement.back(ball.centre), ball.radius / self.placement.scale);
         self.field.range(&Ball { centre, radius }).times(self.placement.scale)
+    }
+
+    fn over(&self, origin: DVec3, h: f64) -> Option<Arc<dyn Cubes>> {
+        // A turned lattice is none.
+        if self.placement.turn != DMat3::IDENTITY {
+            return None;
+        }
+        let scale = self.placement.scale;
+        Some(Arc::new(Scaled { cubes: self.field.over(self.placement.back(origin), h / scale)?, scale }))
     }
 
     fn lipschitz(&self) -> f64 {

@@ -9,7 +9,7 @@ use super::table::Reading;
 use super::tree::{Call, Gives, Node, NodeKind, Place, Value};
 use crate::field::algebra;
 use crate::field::blob::BlobOptions;
-use crate::field::filter::{Adaptive, FilterOptions, Kernel, Sampling, SmoothOptions, WIDEST, filtered};
+use crate::field::filter::{Adaptive, Distances, FilterOptions, Kernel, Sampling, SmoothOptions, WIDEST, filtered};
 use crate::field::{
     Body, Extent, Field, FillOptions, Placement, PointField, Sampled, Shared, Solid, blur_band, blurred, fill, placed,
     scattered,
@@ -121,8 +121,10 @@ pub(super) fn filter(call: &Call<Value>, field: &Shared) -> Result<Shared> {
         None => Kernel::Bump { width: call.length("width").unwrap_or(WIDEST * cap) },
     };
     let adaptive = call.count("least").map(|least| Adaptive { least: least as usize });
+    let distances = call.count("cells").map_or_else(Distances::default, |cells| Distances::interpolated(cells as u32));
     // A Gaussian has no end: its sign is put back.
-    let options = FilterOptions { cap, kernel, sampling: sampling(call), adaptive, sign_safe: sigma.is_some() };
+    let options =
+        FilterOptions { cap, kernel, sampling: sampling(call), adaptive, sign_safe: sigma.is_some(), distances };
     Ok(filtered(field.clone(), &options)?)
 }
 

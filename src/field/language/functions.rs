@@ -91,7 +91,7 @@ pub static FUNCTIONS: &[&Function] = &[
     &of(
         "filter",
         &["a"],
-        "the surface of a, with a field that is smooth away from it; width is that of the bump kernel, by default 8/9 of cap; sigma takes a Gaussian kernel instead; least is the fewest samples where few are enough",
+        "the surface of a, with a field that is smooth away from it; width is that of the bump kernel, by default 8/9 of cap; sigma takes a Gaussian kernel instead; least is the fewest samples where few are enough; cells is how many cells along cap distances to meshes are interpolated in, and with 0 each is asked for",
         |call, fields, _| filter(call, &fields[0]),
     )
     .with(&[
@@ -100,6 +100,7 @@ pub static FUNCTIONS: &[&Function] = &[
         Parameter { name: "sigma", kind: Kind::Length, presence: Presence::InsteadOf("width") },
         SAMPLES,
         optional("least", Kind::Count(2, 65_536)),
+        default("cells", Kind::Count(0, 1024), Preset::Quantity(24.0, "")),
     ]),
     &of(
         "smooth",

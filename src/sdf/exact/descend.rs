@@ -5,7 +5,7 @@ use glam::{DVec3, IVec3, Vec3, Vec4};
 
 use super::feature::Features;
 use super::quads::{Eight, Local, LocalEdge, LocalFace, LocalVertex, NearestSides};
-use crate::lattice::{BRICK, BRICK_VOXELS, index_in_brick};
+use crate::lattice::{BRICK, BRICK_VOXELS, brick_of, index_in_brick};
 
 /// Voxels along one side of a tile.
 pub(super) const TILE: i32 = 32;
@@ -32,6 +32,16 @@ pub(super) struct Lists {
 }
 
 impl Lists {
+    /// All features.
+    pub(super) fn all(features: &Features) -> Self {
+        let all = |count: usize| (0..count as u32).collect();
+        Self {
+            faces: all(features.faces.len()),
+            edges: all(features.edges.len()),
+            vertices: all(features.vertices.len()),
+        }
+    }
+
     pub(super) fn len(&self) -> usize {
         self.faces.len() + self.edges.len() + self.vertices.len()
     }
@@ -187,7 +197,7 @@ impl TileFeatures<'_> {
             let mut voxels = Voxels { values: Box::new([f32::INFINITY; BRICK_VOXELS]), any: false };
             self.voxels(levels, block, &mut voxels);
             if voxels.any {
-                out.push(Filled { brick: (self.base + block.base) / BRICK, values: voxels.values });
+                out.push(Filled { brick: brick_of(self.base + block.base), values: voxels.values });
             }
             return;
         }

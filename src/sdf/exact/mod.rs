@@ -6,6 +6,7 @@
 //! they meet and that can be nearest to one of their points; the few that are left are measured at all eight voxels at
 //! once, in single precision about the tile's centre. Where that cannot tell the side of a voxel, double precision does.
 
+mod blocks;
 mod cost;
 mod descend;
 mod feature;
@@ -21,6 +22,7 @@ use std::sync::Arc;
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
+pub use blocks::BlockDistance;
 pub use cost::{Cost, cost};
 pub use of_solid::SolidDistance;
 pub use point::{ExactDistance, Nearest, PointSign};

@@ -27,9 +27,9 @@ pub(crate) struct Scope {
 
 /// A cube of voxels.
 #[derive(Debug, Clone, Copy)]
-struct Block {
-    base: IVec3,
-    size: i32,
+pub(super) struct Block {
+    pub base: IVec3,
+    pub size: i32,
 }
 
 impl Block {
@@ -37,7 +37,7 @@ impl Block {
         0.5 * f64::from(self.size - 1)
     }
 
-    fn centre(self) -> DVec3 {
+    pub fn centre(self) -> DVec3 {
         self.base.as_dvec3() + self.half()
     }
 
@@ -182,7 +182,7 @@ fn halve(
 }
 
 /// Those of `lists` that can be nearest to a voxel of `block`.
-fn lists_of(block: &Block, lists: &Lists, features: &Features, scope: &Scope) -> Lists {
+pub(super) fn lists_of(block: &Block, lists: &Lists, features: &Features, scope: &Scope) -> Lists {
     let (centre, half) = (block.centre(), block.half());
     let faces = seen(&features.faces, &lists.faces, centre, half);
     let edges = seen(&features.edges, &lists.edges, centre, half);

@@ -2,5 +2,6 @@
 
 mod algebra;
 mod filter;
+mod interpolated;
 mod sources;
 mod support;
