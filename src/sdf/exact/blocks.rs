@@ -53,10 +53,10 @@ impl BlockDistance {
     pub fn cube(&self, cube: IVec3) -> Option<Vec<f32>> {
         let block = group(0, cube);
         let from_middle = block.centre().distance(self.middle) + f64::from(SIDE);
-        if !(from_middle < self.reach) {
+        if from_middle >= self.reach || from_middle.is_nan() {
             return None;
         }
-        let lists = lists_of(&block, &*self.lists(1, cube >> 1), &self.features, &self.scope());
+        let lists = lists_of(&block, &self.lists(1, cube >> 1), &self.features, &self.scope());
         let mut filled = Vec::new();
         let (end, band) = (IVec3::MAX, self.scope().band as f32);
         Worker::default().tile(block.base, end, &self.features, &lists, band, &mut filled);
@@ -86,7 +86,7 @@ impl BlockDistance {
         let found = if level == LEVELS {
             lists_of(&block, &Lists::all(&self.features), &self.features, &self.scope())
         } else {
-            lists_of(&block, &*self.lists(level + 1, number >> 1), &self.features, &self.scope())
+            lists_of(&block, &self.lists(level + 1, number >> 1), &self.features, &self.scope())
         };
         let found = Arc::new(found);
         let mut groups = self.groups.write().unwrap_or_else(PoisonError::into_inner);
