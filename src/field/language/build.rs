@@ -113,7 +113,10 @@ fn sampling(call: &Call<Value>) -> Sampling {
     Sampling::Drawn { count: call.count("samples").unwrap_or(64) as usize, seed: 0, mirrored: true }
 }
 
-pub(super) fn filter(call: &Call<Value>, field: &Shared) -> Result<Shared> {
+/// Of the memory that is allowed, tiles of a filter take no more than one part in so many.
+const FOR_TILES: u64 = 4;
+
+pub(super) fn filter(call: &Call<Value>, field: &Shared, max_memory: Option<u64>) -> Result<Shared> {
     let cap = call.length_or_zero("cap");
     let sigma = call.length("sigma");
     let kernel = match sigma {
@@ -121,7 +124,12 @@ pub(super) fn filter(call: &Call<Value>, field: &Shared) -> Result<Shared> {
         None => Kernel::Bump { width: call.length("width").unwrap_or(WIDEST * cap) },
     };
     let adaptive = call.count("least").map(|least| Adaptive { least: least as usize });
-    let distances = call.count("cells").map_or_else(Distances::default, |cells| Distances::interpolated(cells as u32));
+    let cells = call.count("cells").map_or_else(Distances::default, |cells| Distances::interpolated(cells as u32));
+    let most = max_memory.map_or(u64::MAX, |allowed| allowed / FOR_TILES);
+    let distances = match cells {
+        Distances::Interpolated { cells, memory } => Distances::Interpolated { cells, memory: memory.min(most) },
+        Distances::Asked => Distances::Asked,
+    };
     // A Gaussian has no end: its sign is put back.
     let options =
         FilterOptions { cap, kernel, sampling: sampling(call), adaptive, sign_safe: sigma.is_some(), distances };

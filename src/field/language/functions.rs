@@ -92,7 +92,7 @@ pub static FUNCTIONS: &[&Function] = &[
         "filter",
         &["a"],
         "the surface of a, with a field that is smooth away from it; width is that of the bump kernel, by default 8/9 of cap; sigma takes a Gaussian kernel instead; least is the fewest samples where few are enough; cells is how many cells along cap distances to meshes are interpolated in, and with 0 each is asked for",
-        |call, fields, _| filter(call, &fields[0]),
+        |call, fields, site| filter(call, &fields[0], site.max_memory),
     )
     .with(&[
         default("cap", Kind::Length, Preset::Quantity(5.0, "%")),
