@@ -87,7 +87,7 @@ fn a_mesh_tells_the_values_over_a_lattice_as_it_does_at_its_points() {
         for field in [mesh(&shape), placed(mesh(&shape), small)] {
             let (h, origin) = (0.03, DVec3::new(-0.4, -0.3, -0.5));
             let cubes = field.over(origin, h).expect("a closed mesh has a quick way");
-            for cube in [IVec3::ZERO, IVec3::new(-1, 0, 1), IVec3::new(3, -2, 0), IVec3::new(40, 2, 1)] {
+            for cube in [IVec3::ZERO, IVec3::new(-1, 0, 1), IVec3::new(3, -2, 0), IVec3::new(8, 2, 1)] {
                 let found = cubes.cube(cube).expect("near enough");
                 assert_eq!(found.len(), 32 * 32 * 32);
                 for (n, value) in (0..).zip(found).step_by(7) {

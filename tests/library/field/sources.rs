@@ -48,7 +48,8 @@ fn packets_of_a_tree_find_what_single_searches_find() {
 #[test]
 fn gradients_are_those_of_the_values() {
     let step = 1e-6;
-    for (name, field) in all() {
+    // What is interpolated is single precision: `interpolated.rs` compares its gradients with those that are asked for.
+    for (name, field) in all().into_iter().filter(|(name, _)| *name != "interpolated filter") {
         let mut judged = 0;
         for p in scattered(150, 7, &room()) {
             let around = |step: f64| {

@@ -6,7 +6,9 @@ use glam::DVec3;
 use meshwright::field::algebra::{self, average, complement, difference, morph, offset, ramp, shell, union};
 use meshwright::field::blend::{blend_difference, blend_intersection, blend_union};
 use meshwright::field::blob::{self, BlobOptions, blob_difference, blob_intersection, blob_union};
-use meshwright::field::filter::{Adaptive, FilterOptions, Kernel, Sampling, SmoothOptions, filtered, smooth};
+use meshwright::field::filter::{
+    Adaptive, Distances, FilterOptions, Kernel, Sampling, SmoothOptions, filtered, smooth,
+};
 use meshwright::field::{
     Body, FillOptions, Level, MeshField, Placement, PointField, Sampled, Shared, Solid, fill, level, material, placed,
     scattered,
@@ -51,8 +53,9 @@ pub fn all() -> Vec<(&'static str, Shared)> {
     let filter = |field, options| filtered(field, &options).unwrap();
     let options = FilterOptions { sampling: mirrored, ..FilterOptions::new(0.3) };
     let safe = FilterOptions { kernel: Kernel::gaussian(0.2), sign_safe: true, ..options };
+    let asked = FilterOptions { distances: Distances::Asked, ..options };
     let many = Sampling::Drawn { count: 64, seed: 0, mirrored: true };
-    let adaptive = FilterOptions { adaptive: Some(Adaptive { least: 24 }), sampling: many, ..options };
+    let adaptive = FilterOptions { adaptive: Some(Adaptive { least: 24 }), sampling: many, ..asked };
     let regular = FilterOptions { sampling: Sampling::Regular { side: 4 }, ..options };
     let blobs = BlobOptions { radius: 0.6, gain: 0.6 };
     let grid = fill(&*ball(), &lattice(0.1), &FillOptions { band: Some(0.5), max_memory: None }, &Progress::none());
@@ -92,7 +95,8 @@ pub fn all() -> Vec<(&'static str, Shared)> {
         ("compared", blob::compare(block(), ball(), blobs)),
         ("material", material(vec![ball(), torus()], vec![2.0, 5.0])),
         ("filtered", filter(block(), options)),
-        ("filtered mesh", filter(torus(), options)),
+        ("filtered mesh", filter(torus(), asked)),
+        ("interpolated filter", filter(torus(), options)),
         ("filtered safely", filter(block(), safe)),
         ("filtered adaptively", filter(torus(), adaptive)),
         ("filtered on a grid", filter(block(), regular)),
