@@ -16,7 +16,7 @@ pub(super) const CLEAR: f64 = 3.0;
 /// Bricks around places where triangles that stay end: room for more of them to go where the two do not fit.
 const ROOM: i32 = 2;
 /// Around an open rim the part reaches so far beyond its box, of its diagonal, since a surface over it bulges.
-const BULGE: f64 = 0.125;
+const BULGE: f64 = 0.25;
 /// Voxels are looked at along the part's border and where surface is in it: that is worth while if there are no more bricks than so many times those that
 /// the area of all of the surface fills, of which voxels are in half as many again.
 const MOST: f64 = 0.75;
