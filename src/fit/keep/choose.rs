@@ -39,7 +39,7 @@ pub struct Kept {
 pub struct Seams {
     /// The triangles that are not kept, model units.
     pub others: Vec<[DVec3; 3]>,
-    /// The edges between those that are kept and those that are not, or nothing, model units.
+    /// The edges between those that are kept and those that are not, model units; edges with nothing beyond are on rims.
     pub edges: Vec<[DVec3; 2]>,
     /// For each connected part of the edges with one triangle, kept or not, the box around it, model units.
     pub rims: Vec<Bounds>,
@@ -86,7 +86,7 @@ impl Kept {
             let kept = edge.halves().filter(|&half| is[half as usize / 3]).count();
             let Some(half) = edge.halves().next().map(|half| half as usize) else { return };
             let ends = [half % 3, (half + 1) % 3].map(|k| mesh.triangles[half / 3][k]);
-            if kept == 1 || kept > 0 && edge.count() > 2 {
+            if kept > 0 && (kept < edge.count() || kept > 2) && edge.count() > 1 {
                 seams.edges.push(ends.map(|v| mesh.positions[v as usize]));
             }
             if edge.count() == 1 {
