@@ -79,7 +79,10 @@ impl Part {
         edges.iter().try_for_each(|edge| taken.touched_by(edge))?;
         let boxes: Vec<[IVec3; 2]> = rims.iter().map(|rim| around(rim, &lattice)).collect();
         let room = MOST * surface - boxes.iter().map(|&sides| skin(sides)).sum::<f64>();
-        let mut bricks = grown(&taken.bricks, room.max(0.0) as usize)?;
+        if room < 0.0 {
+            return None;
+        }
+        let mut bricks = grown(&taken.bricks, room as usize)?;
         let share = MOST - (room - bricks.len() as f64) / surface;
         let (large, small): (Vec<_>, Vec<_>) = boxes.into_iter().partition(|&[low, high]| volume(low, high) > LARGE);
         small.into_iter().for_each(|[low, high]| bricks.extend(all_between(low, high)));
