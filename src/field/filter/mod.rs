@@ -50,7 +50,8 @@ pub enum Distances {
     Asked,
     /// Farther from the surface than half of the cap, values are interpolated between the points of a lattice, if the
     /// field has a quick way to tell them there ([`Field::over`](super::Field::over)); nearer, and where it has none, it is
-    /// asked for each sample, so that the surface stays where it is.
+    /// asked for each sample, so that the surface stays where it is. For fields over a lattice: at few scattered points,
+    /// [`Distances::Asked`] is quicker.
     Interpolated {
         /// Cells along the cap, at least 1. With 24 the filtered value is within a thousandth of the cap of that by
         /// [`Distances::Asked`] (docs/accuracy.md); twice as many quarter the error.
