@@ -3,8 +3,9 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use glam::{DVec3, IVec3};
+use glam::DVec3;
 
+use super::cubes::Scaled;
 use super::{Ball, Cubes, Extent, Field, Range, Sample, SourceTriangle};
 use crate::mesh::{Bounds, TriMesh};
 use crate::sdf::exact::{BlockDistance, ExactDistance, Nearest, PointSign};
@@ -38,20 +39,6 @@ impl MeshField {
     }
 }
 
-/// The distance to a mesh over a lattice of spacing `h`, model units.
-struct MeshCubes {
-    distance: BlockDistance,
-    h: f64,
-}
-
-impl Cubes for MeshCubes {
-    fn cube(&self, cube: IVec3) -> Option<Vec<f32>> {
-        let mut values = self.distance.cube(cube)?;
-        values.iter_mut().for_each(|value| *value = (f64::from(*value) * self.h) as f32);
-        Some(values)
-    }
-}
-
 impl Field for MeshField {
     fn values(&self, points: &[DVec3], values: &mut [f64]) {
         self.each(points, |k, nearest| values[k] = nearest.map_or(f64::INFINITY, |nearest| nearest.signed));
@@ -68,8 +55,8 @@ impl Field for MeshField {
     }
 
     fn over(&self, origin: DVec3, h: f64) -> Option<Arc<dyn Cubes>> {
-        let distance = BlockDistance::of(self.mesh.as_ref()?, origin, h)?;
-        Some(Arc::new(MeshCubes { distance, h }))
+        let cubes = Arc::new(BlockDistance::of(self.mesh.as_ref()?, origin, h)?);
+        Some(Arc::new(Scaled { cubes, scale: h }))
     }
 
     fn lipschitz(&self) -> f64 {

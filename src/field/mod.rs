@@ -10,7 +10,7 @@
 //!
 //! ```
 //! use std::sync::Arc;
-//! use glam::{DVec3, IVec3};
+//! use glam::DVec3;
 //! use meshwright::field::{Body, Field, Shared, Solid, algebra, blend};
 //!
 //! let ball = |x| -> Shared {
@@ -24,6 +24,7 @@ pub mod algebra;
 pub mod blend;
 pub mod blob;
 mod combined;
+mod cubes;
 mod fill;
 pub mod filter;
 pub mod language;
@@ -40,8 +41,9 @@ mod solids;
 use std::sync::Arc;
 
 pub use combined::{Combined, Rule, Slope};
+pub use cubes::Cubes;
 pub use fill::{FillError, FillOptions, fill};
-use glam::{DVec3, IVec3};
+use glam::DVec3;
 pub use level::{Level, LevelError, level};
 pub use material::material;
 pub use mesh::MeshField;
@@ -50,13 +52,6 @@ pub use points::{PointField, scattered};
 pub use range::{Ball, Extent, Range};
 pub use sampled::{Sampled, blur_band, blurred};
 pub use solids::{Body, Solid};
-
-/// The values of a field over a lattice without an end.
-pub trait Cubes: Send + Sync {
-    /// The values, model units, at the 32³ points from `29 cube - 1` on, lattice coordinates, x fastest, then y; they may be off by 1e-3 of the spacing. `None` where they
-    /// are not known. What they are depends on nothing that was asked before.
-    fn cube(&self, cube: IVec3) -> Option<Vec<f32>>;
-}
 
 /// A field that others can be made of.
 pub type Shared = Arc<dyn Field>;

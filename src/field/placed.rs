@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use glam::{DMat3, DVec3, IVec3};
+use glam::{DMat3, DVec3};
 
+use super::cubes::Scaled;
 use super::{Ball, Cubes, Extent, Field, Range, Sample, Shared};
 use crate::mesh::Bounds;
 
@@ -64,20 +65,6 @@ struct Placed {
 impl Placed {
     fn places(&self, points: &[DVec3]) -> Vec<DVec3> {
         points.iter().map(|&p| self.placement.back(p)).collect()
-    }
-}
-
-/// Values that are made larger.
-struct Scaled {
-    cubes: Arc<dyn Cubes>,
-    scale: f64,
-}
-
-impl Cubes for Scaled {
-    fn cube(&self, cube: IVec3) -> Option<Vec<f32>> {
-        let mut values = self.cubes.cube(cube)?;
-        values.iter_mut().for_each(|value| *value = (f64::from(*value) * self.scale) as f32);
-        Some(values)
     }
 }
 

@@ -257,7 +257,7 @@ fn extent(size: [u32; 2]) -> wgpu::Extent3d {
 }
 
 /// The most workgroups along a side.
-const SIDE: u64 = 32768;
+pub(super) const SIDE: u32 = 32768;
 
 /// One pass of so many workgroups.
 pub(super) fn pass(
@@ -274,5 +274,6 @@ pub(super) fn pass(
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
     pass.set_pipeline(pipeline);
     pass.set_bind_group(0, &group, &[]);
-    pass.dispatch_workgroups(groups.min(SIDE) as u32, groups.div_ceil(SIDE) as u32, 1);
+    let side = u64::from(SIDE);
+    pass.dispatch_workgroups(groups.min(side) as u32, groups.div_ceil(side) as u32, 1);
 }

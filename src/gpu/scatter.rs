@@ -8,7 +8,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::programs::Scatter;
-use super::run::{Received, Run, Sent, Source, pass};
+use super::run::{Received, Run, SIDE, Sent, Source, pass};
 use super::scene::{Beam, Chunk, Tile};
 use super::{GpuError, GpuLimits};
 use crate::ldi::Crossed;
@@ -17,8 +17,6 @@ use crate::ldi::Crossed;
 const BATCH: u64 = 1 << 22;
 /// Triangles of a workgroup, as in the shader.
 const WIDTH: u32 = 64;
-/// The most workgroups along a side.
-const SIDE: u32 = 32768;
 /// So many rays along a side of a tile are one more row of invocations for each triangle, at most so many.
 const STRIP: u32 = 32;
 const MOST_STRIPS: u32 = 64;

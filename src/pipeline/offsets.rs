@@ -195,7 +195,10 @@ impl Job<'_> {
         }
         stages.begin(Stage::Fit)?;
         let evidence = Evidence::of_samples(reached.iter().map(|r| (r.tried, r.touched)));
-        let kept = Kept::of(self.solid, &evidence, self.h, self.progress)?;
+        let kept = match self.surface.keeps() {
+            true => Kept::of(self.solid, &evidence, self.h, self.progress)?,
+            false => Kept::default(),
+        };
         let off = |p| {
             let own = body.at(p, self.h).0.abs();
             if own < 1e-3 * self.h { own } else { own.min(balls.at(p, self.h).0.abs()) }

@@ -113,7 +113,7 @@ impl Precision {
 impl Options {
     /// Whether triangles of the source that are right stay as they are.
     pub(super) fn keeps(&self) -> bool {
-        self.fit.is_some_and(|fit| !fit.rebuild)
+        self.surface().keeps()
     }
 
     /// The defaults at voxel size `voxel`.
@@ -150,6 +150,11 @@ impl Options {
 }
 
 impl SurfaceOptions {
+    /// Whether triangles of the source that are right stay as they are.
+    pub(super) fn keeps(&self) -> bool {
+        self.fit.is_some_and(|fit| !fit.rebuild)
+    }
+
     /// The defaults at voxel size `voxel`.
     pub fn new(voxel: VoxelSize) -> Self {
         Self {

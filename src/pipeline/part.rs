@@ -53,19 +53,15 @@ impl Part {
 
     /// Whether all triangles of a source that are not all within the part are triangles of a surface, once each, and nothing else of the surface leaves it.
     pub(super) fn stays_beyond(&self, surface: &Surface, source: &TriMesh) -> bool {
-        let leave = (0..source.triangles.len()).into_par_iter().map(|t| self.is_left_by(source.corners(t)));
-        let mut missing: Vec<bool> = leave.collect();
         let own: Vec<Option<u32>> =
             (0..surface.mesh.triangles.len() as u32).map(|t| surface.source_triangle(t)).collect();
         let made_stays = |(t, own): (usize, &Option<u32>)| own.is_some() || !self.is_left_by(surface.mesh.corners(t));
         if !own.par_iter().enumerate().all(made_stays) {
             return false;
         }
-        let once = own.iter().flatten().all(|&t| {
-            let t = t as usize;
-            std::mem::replace(&mut missing[t], false) || !self.is_left_by(source.corners(t))
-        });
-        once && !missing.contains(&true)
+        let mut times = vec![0u32; source.triangles.len()];
+        own.iter().flatten().for_each(|&t| times[t as usize] += 1);
+        times.par_iter().enumerate().all(|(t, &times)| times == 1 || !self.is_left_by(source.corners(t)))
     }
 
     /// The bricks around all places where triangles that are kept end, of the survey's lattice, and their share of what all of the surface would cost; `None` where that is

@@ -11,7 +11,7 @@ use super::rows::Picked;
 use crate::gpu::GpuError;
 use crate::gpu::programs::Field;
 use crate::gpu::run::{Received, Run, Sent, Source, pass};
-use crate::lattice::{BRICK, BRICK_VOXELS, index_in_brick, voxel_in_brick};
+use crate::lattice::{BRICK, BRICK_VOXELS, voxel_in_brick};
 use crate::sdf::exact::{Features, Filled};
 
 /// Blocks of a brick.
@@ -119,7 +119,6 @@ impl Arrived {
         for (k, value) in values.iter_mut().enumerate().filter(|(_, value)| value.to_bits() & 1 == 1) {
             count += 1;
             let voxel = voxel_in_brick(k);
-            debug_assert_eq!(index_in_brick(voxel), k);
             let half = voxel / (BRICK / 2);
             let octant = OCTANTS * n + (half.x + 2 * half.y + 4 * half.z) as usize;
             let list = match self.starts.get(octant..octant + 2) {

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use super::descend::{Lists, TILE, Worker};
 use super::feature::Features;
 use super::tiles::{Block, Scope, lists_of};
-use crate::lattice::{BRICK, Lattice, brick_of, index_in_brick, voxel_in_brick};
+use crate::lattice::{BRICK, Lattice, brick_of, voxel_in_brick};
 use crate::mesh::TriMesh;
 
 /// Points along the side of a cube.
@@ -65,7 +65,6 @@ impl BlockDistance {
             let first = (part.brick - brick_of(block.base)) * BRICK;
             for (n, &value) in part.values.iter().enumerate() {
                 let at = first + voxel_in_brick(n);
-                debug_assert_eq!(index_in_brick(voxel_in_brick(n)), n);
                 values[(at.x + SIDE * (at.y + SIDE * at.z)) as usize] = value;
             }
         }
