@@ -3,7 +3,9 @@
 use std::fmt;
 
 use serde::Serialize;
+use serde_json::json;
 
+use super::class::Class;
 use super::length::QuantityError;
 use super::words;
 use crate::arrange::ArrangeError;
@@ -67,6 +69,11 @@ pub struct Failure {
     /// The exit status.
     #[serde(skip)]
     pub exit: Exit,
+    /// What kind of failure it is.
+    pub class: Class,
+    /// What belongs to that kind, by name.
+    #[serde(skip_serializing_if = "serde_json::Value::is_null")]
+    pub fields: serde_json::Value,
     /// One sentence.
     pub message: String,
     /// Lines that show the place, printed as they are.
@@ -83,7 +90,8 @@ pub const INPUTS_ALONE: &str = "the inputs alone need that much: a larger --max-
 impl Failure {
     /// A failure without a hint.
     pub fn new(exit: Exit, message: impl Into<String>) -> Self {
-        Self { exit, message: message.into(), place: None, hint: None }
+        let (class, message) = (Class::of_exit(exit), message.into());
+        Self { exit, class, fields: serde_json::Value::Null, message, place: None, hint: None }
     }
 
     /// Wrong usage.
@@ -103,11 +111,19 @@ impl Failure {
 
     /// More memory needed than allowed, bytes; by `asked` or, without it, by what is free.
     pub fn memory(needed: u64, allowed: u64, asked: Option<u64>) -> Self {
-        let allowed = match asked {
+        let words = match asked {
             Some(cap) => format!("--max-memory allows {}", words::bytes(cap)),
             None => format!("{} can be had (--max-memory SIZE says another limit)", words::bytes(allowed)),
         };
-        Self::new(Exit::Memory, format!("about {} of memory would be needed, and {allowed}", words::bytes(needed)))
+        let failure =
+            Self::new(Exit::Memory, format!("about {} of memory would be needed, and {words}", words::bytes(needed)));
+        Self { fields: json!({ "needed": needed, "allowed": asked.unwrap_or(allowed) }), ..failure }
+    }
+
+    /// The same, of a kind that the exit status does not tell.
+    pub fn of_class(mut self, class: Class) -> Self {
+        self.class = class;
+        self
     }
 
     /// The same with something to try.
@@ -124,6 +140,14 @@ impl Failure {
 
     /// What a pipeline's error means, for operands that go by `labels`.
     pub fn pipeline(error: &impl Advice, labels: &[String], unit: words::UnitName<'_>, asked: Asked) -> Self {
+        let failure = Self::in_words(error, labels, unit, asked);
+        match Class::of_trouble(&error.trouble()) {
+            Some((class, fields)) => Self { class, fields, ..failure },
+            None => failure,
+        }
+    }
+
+    fn in_words(error: &impl Advice, labels: &[String], unit: words::UnitName<'_>, asked: Asked) -> Self {
         let failure = match error.trouble() {
             Trouble::Stopped(stopped) => return Self::from(stopped),
             Trouble::Memory(limit) => return Self::limit(limit, unit, asked),
@@ -132,10 +156,14 @@ impl Failure {
                 let label = labels.get(operand).map_or("the input", String::as_str);
                 Self::input(format!("{label}: no triangle has an area"))
             }
-            Trouble::Options => Self::usage(error.to_string()),
+            Trouble::Options | Trouble::NotClosed { .. } => Self::usage(error.to_string()),
             Trouble::Voxel => Self::new(if asked.voxel { Exit::Usage } else { Exit::Input }, error.to_string()),
             Trouble::NotExact(why) => Self::new(Exit::Limit, not_exact(why, labels)),
-            Trouble::Input => Self::input(error.to_string()),
+            Trouble::Input
+            | Trouble::Nothing(_)
+            | Trouble::NothingLeft { .. }
+            | Trouble::TooThin { .. }
+            | Trouble::TooMany => Self::input(error.to_string()),
             Trouble::Unkept => Self::new(Exit::Limit, error.to_string()),
             Trouble::NoRoom => Self::new(Exit::Memory, error.to_string()),
             Trouble::Device | Trouble::Call | Trouble::Index => Self::internal(error.to_string()),
@@ -163,6 +191,7 @@ impl Failure {
     pub fn not_solid(validity: &Validity) -> Self {
         let problems = validity.problems().join("; ");
         Self::new(Exit::Limit, format!("the result is not a valid solid ({problems}); it was not written"))
+            .of_class(Class::NotSolid)
             .hint("another --resolution or --voxel; and please report it: this should not happen")
     }
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 
+use super::class::Class;
 use super::exit::{Exit, Failure};
 use super::streams::is_stream;
 
@@ -20,5 +21,6 @@ pub fn withheld(reasons: &[String], output: Option<&Path>, instead: &str) -> Fai
     let before = output.filter(|path| !is_stream(path) && path.exists());
     let stays = before.map_or(String::new(), |path| format!("; {} stays as it was", path.display()));
     Failure::new(Exit::Limit, format!("{}. Nothing was written{stays}", reasons.join("; ")))
+        .of_class(Class::Withheld)
         .hint(format!("{instead}; --keep-partial writes this result all the same"))
 }

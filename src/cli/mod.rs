@@ -6,6 +6,7 @@ mod base;
 mod boolean;
 mod change;
 mod choices;
+mod class;
 mod compare;
 mod convert;
 mod convert_args;

@@ -2,7 +2,7 @@
 
 use super::{
     BlockError, BooleanError, CanalError, DistanceError, FieldError, HollowError, LimitError, MorphologyError,
-    OuterError, ThickenError, ThicknessError,
+    NothingEnclosed, OuterError, ThickenError, ThicknessError,
 };
 use crate::arrange::ArrangeError;
 use crate::field::FillError;
@@ -20,8 +20,27 @@ pub enum Trouble<'a> {
     Options,
     /// The voxel size does not go with the coordinates.
     Voxel,
-    /// The input encloses nothing, or is beyond what can be numbered.
+    /// The input cannot be taken.
     Input,
+    /// The result would enclose nothing.
+    Nothing(&'a NothingEnclosed),
+    /// Nothing of a solid is left.
+    NothingLeft {
+        /// The solid is nowhere thicker than this, model units; `None` where it is not that.
+        thinner_than: Option<f64>,
+    },
+    /// What is left of a solid is thinner than the voxels.
+    TooThin {
+        /// The smallest voxel that was tried, model units.
+        voxel: f64,
+    },
+    /// More triangles or crossings than can be numbered.
+    TooMany,
+    /// A closed surface is needed, and this is none.
+    NotClosed {
+        /// What is wrong with it, a sentence.
+        problem: &'a str,
+    },
     /// An operand has no triangle with an area.
     Empty {
         /// Its number, from 0.
@@ -60,7 +79,7 @@ impl Advice for LimitError {
     fn trouble(&self) -> Trouble<'_> {
         match self {
             Self::Memory { .. } => Trouble::Memory(self),
-            Self::Triangles { .. } | Self::Crossings { .. } => Trouble::Input,
+            Self::Triangles { .. } | Self::Crossings { .. } => Trouble::TooMany,
         }
     }
 }
@@ -74,7 +93,7 @@ impl Advice for BooleanError {
             Self::Index { .. } | Self::NotFinite { .. } => Trouble::Index,
             Self::Lattice(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
-            Self::Nothing(_) => Trouble::Input,
+            Self::Nothing(why) => Trouble::Nothing(why),
             Self::NotExact(why) => Trouble::NotExact(why),
             Self::Device { .. } => Trouble::Device,
             Self::NotSolid(what) => Trouble::NotSolid(what),
@@ -99,7 +118,8 @@ impl Advice for MorphologyError {
             Self::Lattice(_) | Self::Distance(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
             Self::Index(_) => Trouble::Index,
-            Self::NothingLeft { .. } | Self::AllTooThin { .. } => Trouble::Input,
+            Self::NothingLeft { thinner_than } => Trouble::NothingLeft { thinner_than: *thinner_than },
+            Self::AllTooThin { voxel } => Trouble::TooThin { voxel: *voxel },
             Self::NotSolid(what) => Trouble::NotSolid(what),
         }
     }
@@ -154,9 +174,9 @@ impl Advice for DistanceError {
             Self::Index(_) => Trouble::Index,
             Self::Lattice(_) | Self::Exact(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
-            Self::NotClosed { .. } => Trouble::Options,
+            Self::NotClosed { problem, .. } => Trouble::NotClosed { problem },
             Self::Levels(_) => Trouble::NoRoom,
-            Self::Nothing(_) => Trouble::Input,
+            Self::Nothing(why) => Trouble::Nothing(why),
             Self::Device { .. } => Trouble::Device,
         }
     }

@@ -1,10 +1,13 @@
 //! Why a result has no inside.
 
+use serde::Serialize;
+
 use super::ThinReport;
 use crate::digits;
 
 /// Why nothing is enclosed. The sentence of each says what to try. Lengths are in model units.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, Serialize, thiserror::Error)]
+#[serde(tag = "reason", rename_all = "kebab-case")]
 pub enum NothingEnclosed {
     /// Nearly all rays meet open sheets, and voting would fill the volume with noise.
     #[error("the surface encloses nothing: {:.0} % of the rays that meet it pass an open sheet; close or thicken it first", 100.0 * share)]
