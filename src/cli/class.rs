@@ -80,10 +80,9 @@ impl Class {
                 (Self::NotExact, json!({ "edges": edges, "operand": first.operand, "ends": first.ends }))
             }
             Trouble::NotExact(_) => (Self::NotExact, Value::Null),
-            Trouble::Memory(LimitError::Memory { needed, allowed, voxel_that_fits }) => (
-                Self::Memory,
-                json!({ "needed": needed, "allowed": allowed, "voxel_that_fits": voxel_that_fits }),
-            ),
+            Trouble::Memory(LimitError::Memory { needed, allowed, voxel_that_fits }) => {
+                (Self::Memory, json!({ "needed": needed, "allowed": allowed, "voxel_that_fits": voxel_that_fits }))
+            }
             Trouble::NotSolid(what) => (Self::NotSolid, json!({ "problems": what.validity.problems() })),
             Trouble::Device => (Self::Device, Value::Null),
             _ => return None,

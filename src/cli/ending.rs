@@ -81,6 +81,12 @@ impl Ending {
         }
     }
 
+    /// Of a run that its caller ends: nobody listens or watches.
+    pub fn unwatched() -> Self {
+        let (speaker, _) = channel();
+        Self { state: Arc::default(), speaker: Arc::new(Mutex::new(speaker)), interrupted: Arc::default() }
+    }
+
     /// What must not be left behind.
     pub fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)

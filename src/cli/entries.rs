@@ -15,9 +15,11 @@ pub struct InputEntry {
     /// The format it was read as.
     pub format: String,
     /// Size of the file.
-    pub bytes: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bytes: Option<u64>,
     /// SHA-256 of the file.
-    pub sha256: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sha256: Option<String>,
     /// The unit the file carries.
     pub unit: Option<String>,
     /// Its objects.
@@ -47,15 +49,21 @@ pub struct OutputEntry {
     pub path: String,
     /// The format it was written in.
     pub format: String,
-    /// Size of the file.
+    /// Size of the file; nothing of a result that stays in memory.
+    #[serde(skip_serializing_if = "is_nothing")]
     pub bytes: u64,
     /// SHA-256 of the file.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub sha256: String,
     /// The unit of its numbers, where known.
     pub unit: Option<String>,
     /// Its state, read back from the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub validity: Option<Validity>,
+}
+
+fn is_nothing(bytes: &u64) -> bool {
+    *bytes == 0
 }
 
 /// A lattice in the report, in the unit of the run.

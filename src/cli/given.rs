@@ -8,7 +8,7 @@ use super::report::RunReport;
 use super::session::Session;
 use super::shared_args::InputArgs;
 use super::slice::{self, GridInput};
-use super::streams::is_stream;
+use super::streams::{is_stream, label};
 use crate::io::{Format, GridFormat, Unit};
 use crate::mesh::TriMesh;
 use crate::pipeline::Operand;
@@ -42,10 +42,15 @@ impl Given {
         session: &Session,
         notes: &mut Vec<String>,
     ) -> Result<Self, Failure> {
-        input::check_streams(paths)?;
+        input::check_streams(paths, session)?;
         session.progress.stage(Stage::Read)?;
         let mut inputs = Self { meshes: Vec::new(), grids: Vec::new(), order: Vec::new() };
         for path in paths {
+            if let Some(loaded) = session.laid(path) {
+                inputs.order.push(Which::Mesh(inputs.meshes.len()));
+                inputs.meshes.push(input::described(label(path), loaded, notes));
+                continue;
+            }
             let bytes = input::bytes_of(path, &session.progress)?;
             if is_grid(&bytes, path, args) {
                 inputs.order.push(Which::Grid(inputs.grids.len()));

@@ -73,7 +73,7 @@ fn rows(grid: &GridInput, found: &GridEntry, unit: UnitName<'_>) -> Vec<Row> {
     let place = |p: [f64; 3]| p.map(words::number).join(" ");
     let [low, high] = found.range.map(words::number);
     let mut rows = vec![
-        ("file", format!("{}, {}, {}", entry.path, entry.format, words::bytes(entry.bytes))),
+        ("file", format!("{}, {}, {}", entry.path, entry.format, words::bytes(entry.bytes.unwrap_or(0)))),
         ("holds", "values over a lattice, not a mesh (`field a a=FILE -o OUT` makes one of them)".into()),
         ("unit", unit.map_or("not stated in the file".into(), str::to_string)),
         ("voxels", format!("{x} x {y} x {z}, {} in all", words::count(all))),

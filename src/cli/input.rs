@@ -53,16 +53,20 @@ pub fn read_operands(
     session: &Session,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Input>, Failure> {
-    check_streams(paths)?;
+    check_streams(paths, session)?;
     session.progress.stage(Stage::Read)?;
     let progress = &session.progress;
-    let read = |path: &&Path| {
+    let laid: Vec<Option<Loaded>> = paths.iter().map(|path| session.laid(path)).collect();
+    let read = |(path, laid): (&&Path, Option<Loaded>)| {
         let mut own = Vec::new();
-        let input = mesh_of(path, &bytes_of(path, progress)?, args, progress, &mut own)?;
+        let input = match laid {
+            Some(loaded) => described(label(path), loaded, &mut own),
+            None => mesh_of(path, &bytes_of(path, progress)?, args, progress, &mut own)?,
+        };
         Ok((input, own))
     };
     // Each by itself: of several that fail the first is told.
-    let read: Vec<Result<(Input, Vec<String>), Failure>> = paths.par_iter().map(read).collect();
+    let read: Vec<Result<(Input, Vec<String>), Failure>> = paths.par_iter().zip(laid).map(read).collect();
     read.into_iter()
         .map(|input| {
             let (input, own) = input?;
@@ -73,9 +77,9 @@ pub fn read_operands(
 }
 
 /// Refuses to read standard input twice, and what cannot be read.
-pub fn check_streams(paths: &[&Path]) -> Result<(), Failure> {
+pub fn check_streams(paths: &[&Path], session: &Session) -> Result<(), Failure> {
     match paths.iter().filter(|path| is_stream(path)).count() {
-        0 | 1 => paths.iter().try_for_each(|path| super::files::check_input(path)),
+        0 | 1 => paths.iter().filter(|path| !session.holds(path)).try_for_each(|path| super::files::check_input(path)),
         _ => Err(Failure::usage("standard input (`-`) can be read only once")),
     }
 }
@@ -107,6 +111,15 @@ pub fn mesh_of(
     let name = (!stream).then_some(path);
     let loaded = io::read_bytes(bytes, args.in_format, name).map_err(|e| unreadable(&label, stream, args, &e))?;
     progress.check()?;
+    let mut input = described(label, loaded, notes);
+    input.entry.format = input.loaded.format.to_string();
+    input.entry.bytes = Some(bytes.len() as u64);
+    input.entry.sha256 = Some(sha256(bytes));
+    Ok(input)
+}
+
+/// A mesh with its entry in the report, as one that lies in memory. What its reader found odd goes to `notes`.
+pub fn described(label: String, loaded: Loaded, notes: &mut Vec<String>) -> Input {
     notes.extend(loaded.warnings.iter().map(|warning| format!("{label}: {warning}")));
     let entries = |parts: &[Part]| -> Vec<PartEntry> {
         parts.iter().map(|part| PartEntry { name: part.name.clone(), triangles: part.triangles.len() }).collect()
@@ -114,16 +127,16 @@ pub fn mesh_of(
     let entry = InputEntry {
         path: label.clone(),
         name: None,
-        format: loaded.format.to_string(),
-        bytes: bytes.len() as u64,
-        sha256: sha256(bytes),
+        format: "memory".into(),
+        bytes: None,
+        sha256: None,
         unit: loaded.unit.map(|unit| unit.to_string()),
         parts: entries(&loaded.parts),
         negative_parts: loaded.negative.as_ref().map_or(Vec::new(), |negative| entries(&negative.parts)),
         warnings: loaded.warnings.clone(),
         validity: None,
     };
-    Ok(Input { label, loaded, entry })
+    Input { label, loaded, entry }
 }
 
 fn read_stream() -> std::io::Result<Vec<u8>> {

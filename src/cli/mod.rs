@@ -6,7 +6,7 @@ mod base;
 mod boolean;
 mod change;
 mod choices;
-mod class;
+pub mod class;
 mod compare;
 mod convert;
 mod convert_args;
@@ -22,7 +22,7 @@ mod ending;
 mod entries;
 mod epilogue;
 mod exact;
-mod exit;
+pub mod exit;
 mod field;
 mod field_args;
 mod field_places;
@@ -71,11 +71,13 @@ mod target;
 mod transform;
 mod volume;
 mod weights;
+pub mod within;
 mod words;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -121,31 +123,39 @@ pub fn main() -> ExitCode {
             .hint("please report it with the command and the file");
         print_failure(&failure);
     }));
-    let exit = catch_unwind(AssertUnwindSafe(|| dispatch(&cli.verb))).unwrap_or(Exit::Internal);
+    let exit = catch_unwind(AssertUnwindSafe(|| dispatch(&cli.verb, &Host::Program))).unwrap_or(Exit::Internal);
     ExitCode::from(exit.code())
 }
 
-fn dispatch(verb: &Verb) -> Exit {
+/// Where a verb runs.
+enum Host {
+    /// In a process of its own.
+    Program,
+    /// In that of a caller.
+    Caller(Rc<within::Desk>),
+}
+
+fn dispatch(verb: &Verb, host: &Host) -> Exit {
     match verb {
         Verb::Repair(args) => {
-            solid("repair", &args.solid, &[&args.input], |session, report| repair::run(args, session, report))
+            solid(host, "repair", &args.solid, &[&args.input], |session, report| repair::run(args, session, report))
         }
-        Verb::Union(args) => booleans("union", args, Expression::union),
-        Verb::Intersection(args) => booleans("intersection", args, Expression::intersection),
-        Verb::Difference(args) => booleans("difference", args, Expression::difference),
-        Verb::Csg(args) => {
-            solid("csg", &args.solid, &csg::paths(&args.operands), |session, report| csg::run(args, session, report))
-        }
-        Verb::Dilate(args) => grow("dilate", args, Operation::Dilate),
-        Verb::Erode(args) => grow("erode", args, Operation::Erode),
-        Verb::Open(args) => morphology("open", args, Operation::Open),
-        Verb::Close(args) => morphology("close", args, Operation::Close),
-        Verb::Canals(args) => {
-            solid("canals", &args.solid, &[&args.input], |session, report| morphology::canals(args, session, report))
-        }
-        Verb::Thicken(args) => {
-            solid("thicken", &args.solid, &[&args.input], |session, report| morphology::thicken(args, session, report))
-        }
+        Verb::Union(args) => booleans(host, "union", args, Expression::union),
+        Verb::Intersection(args) => booleans(host, "intersection", args, Expression::intersection),
+        Verb::Difference(args) => booleans(host, "difference", args, Expression::difference),
+        Verb::Csg(args) => solid(host, "csg", &args.solid, &csg::paths(&args.operands), |session, report| {
+            csg::run(args, session, report)
+        }),
+        Verb::Dilate(args) => grow(host, "dilate", args, Operation::Dilate),
+        Verb::Erode(args) => grow(host, "erode", args, Operation::Erode),
+        Verb::Open(args) => morphology(host, "open", args, Operation::Open),
+        Verb::Close(args) => morphology(host, "close", args, Operation::Close),
+        Verb::Canals(args) => solid(host, "canals", &args.solid, &[&args.input], |session, report| {
+            morphology::canals(args, session, report)
+        }),
+        Verb::Thicken(args) => solid(host, "thicken", &args.solid, &[&args.input], |session, report| {
+            morphology::thicken(args, session, report)
+        }),
         Verb::Sdf(args) => {
             let job = Job {
                 inputs: vec![&args.input],
@@ -154,7 +164,7 @@ fn dispatch(verb: &Verb) -> Exit {
                 plan: args.plan,
                 ..Job::new("sdf", &args.common)
             };
-            run(job, |session, report| sdf::run(args, session, report))
+            run(host, job, |session, report| sdf::run(args, session, report))
         }
         Verb::Field(args) => {
             let job = Job {
@@ -163,61 +173,64 @@ fn dispatch(verb: &Verb) -> Exit {
                 max_memory: args.max_memory,
                 ..Job::new("field", &args.common)
             };
-            run(job, |session, report| field::run(args, session, report))
+            run(host, job, |session, report| field::run(args, session, report))
         }
         Verb::Hollow(args) => {
-            solid("hollow", &args.solid, &[&args.input], |session, report| hollow::run(args, session, report))
+            solid(host, "hollow", &args.solid, &[&args.input], |session, report| hollow::run(args, session, report))
         }
         Verb::Decimate(args) => {
             let made = made(Some(&args.output), args.writing.force).into_iter().collect();
             let job = Job { inputs: vec![&args.input], made, ..Job::new("decimate", &args.common) };
-            run(job, |session, report| decimate::run(args, session, report))
+            run(host, job, |session, report| decimate::run(args, session, report))
         }
         Verb::Split(args) => {
             let job = Job { inputs: vec![&args.input], ..Job::new("split", &args.common) };
-            run(job, |session, report| split::run(args, session, report))
+            run(host, job, |session, report| split::run(args, session, report))
         }
         Verb::Inspect(args) => {
             let job = Job { inputs: vec![&args.input], ..Job::new("inspect", &args.common) };
-            run(job, |session, report| inspect::run(args, session, report))
+            run(host, job, |session, report| inspect::run(args, session, report))
         }
         Verb::Compare(args) => {
             let made = Made::side("--map", args.map.as_ref()).into_iter().collect();
             let job = Job { inputs: vec![&args.a, &args.b], made, ..Job::new("compare", &args.common) };
-            run(job, |session, report| compare::run(args, session, report))
+            run(host, job, |session, report| compare::run(args, session, report))
         }
         Verb::Convert(args) => {
             let made = made(Some(&args.output), args.writing.force).into_iter().collect();
             let job = Job { inputs: vec![&args.input], made, ..Job::new("convert", &args.common) };
-            run(job, |session, report| convert::run(args, session, report))
+            run(host, job, |session, report| convert::run(args, session, report))
         }
-        Verb::Devices(args) => run(Job::new("devices", &args.common), |_, report| devices::run(args, report)),
+        Verb::Devices(args) => run(host, Job::new("devices", &args.common), |_, report| devices::run(args, report)),
         Verb::Render(args) => {
             let inputs = std::iter::once(&args.input).chain(&args.after).map(AsRef::as_ref).collect();
             let made = made(Some(&args.output), args.force).into_iter().collect();
             let job = Job { inputs, made, ..Job::new("render", &args.common) };
-            run(job, |session, report| render::run(args, session, report))
+            run(host, job, |session, report| render::run(args, session, report))
         }
         Verb::Schema => schema::run(),
     }
 }
 
-fn booleans(verb: &'static str, args: &boolean::BooleanArgs, expression: fn(usize) -> Expression) -> Exit {
+fn booleans(host: &Host, verb: &'static str, args: &boolean::BooleanArgs, expression: fn(usize) -> Expression) -> Exit {
     let paths: Vec<&Path> = args.inputs.iter().map(AsRef::as_ref).collect();
-    solid(verb, &args.solid, &paths, |session, report| boolean::run(args, expression, session, report))
+    solid(host, verb, &args.solid, &paths, |session, report| boolean::run(args, expression, session, report))
 }
 
-fn grow(verb: &'static str, args: &morphology::GrowArgs, operation: Operation) -> Exit {
-    solid(verb, &args.morphology.solid, &[&args.morphology.input], |session, report| {
+fn grow(host: &Host, verb: &'static str, args: &morphology::GrowArgs, operation: Operation) -> Exit {
+    solid(host, verb, &args.morphology.solid, &[&args.morphology.input], |session, report| {
         morphology::grow(args, operation, session, report)
     })
 }
 
-fn morphology(verb: &'static str, args: &morphology::MorphologyArgs, operation: Operation) -> Exit {
-    solid(verb, &args.solid, &[&args.input], |session, report| morphology::run(args, operation, None, session, report))
+fn morphology(host: &Host, verb: &'static str, args: &morphology::MorphologyArgs, operation: Operation) -> Exit {
+    solid(host, verb, &args.solid, &[&args.input], |session, report| {
+        morphology::run(args, operation, None, session, report)
+    })
 }
 
 fn solid(
+    host: &Host,
     verb: &'static str,
     args: &SolidArgs,
     inputs: &[&Path],
@@ -231,7 +244,7 @@ fn solid(
         plan: args.plan,
         ..Job::new(verb, &args.common)
     };
-    run(job, work)
+    run(host, job, work)
 }
 
 fn made(output: Option<&PathBuf>, force: bool) -> Option<Made> {
@@ -273,8 +286,15 @@ impl<'a> Job<'a> {
     }
 }
 
+fn run(host: &Host, job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<Exit, Failure>) -> Exit {
+    match host {
+        Host::Program => run_program(job, work),
+        Host::Caller(desk) => within::run(job, desk, work),
+    }
+}
+
 /// Runs one verb within a session, writes its report, gives all files their names, and prints what there is to say.
-fn run(mut job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<Exit, Failure>) -> Exit {
+fn run_program(mut job: Job<'_>, work: impl FnOnce(&Session, &mut RunReport) -> Result<Exit, Failure>) -> Exit {
     let ready = job.check().and_then(|()| Session::new(job.verb, job.common, job.max_memory));
     let session = match ready {
         Ok(mut session) => {

@@ -16,7 +16,7 @@ use super::streams::is_direct;
 use super::streams::unwritable;
 use super::streams::{hex, is_stream, sha256};
 use super::target::Target;
-use crate::io::{self, DistanceSamples, GridFormat, Loaded, Paint, WriteError, WriteProblem};
+use crate::io::{self, DistanceSamples, GridFormat, Loaded, Paint, Unit, WriteError, WriteProblem};
 use crate::mesh::TriMesh;
 use crate::progress::Stage;
 
@@ -105,6 +105,10 @@ pub fn write_grid(
     format: GridFormat,
     session: &Session,
 ) -> Result<OutputEntry, Failure> {
+    if let Some(desk) = session.desk_for(path) {
+        desk.lay_grid(samples);
+        return Ok(in_memory(samples.unit));
+    }
     let mut bytes = 0;
     let mut hashed = |out: &mut dyn Write| -> Result<String, Failure> {
         let written = hash_of(out, session, |out| io::encode_grid(samples, format, out));
@@ -137,6 +141,18 @@ pub fn write_grid(
     let path = if is_stream(path) { "standard output".into() } else { path.display().to_string() };
     let unit = samples.unit.map(|unit| unit.to_string());
     Ok(OutputEntry { path, format: format.to_string(), bytes, sha256, unit, validity: None })
+}
+
+/// The entry of a result that no file holds.
+pub fn in_memory(unit: Option<Unit>) -> OutputEntry {
+    OutputEntry {
+        path: "memory".into(),
+        format: "memory".into(),
+        bytes: 0,
+        sha256: String::new(),
+        unit: unit.map(|unit| unit.to_string()),
+        validity: None,
+    }
 }
 
 /// Lets `write` write to `out`. Returns the hash of what went through, made on a thread of its own if there is one to be had, and its bytes.

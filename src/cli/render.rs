@@ -15,6 +15,7 @@ use super::exit::{Exit, Failure};
 use super::given::{Given, Which};
 use super::input::Input;
 use super::length::parse_size;
+use super::output::in_memory;
 use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
@@ -99,6 +100,11 @@ pub fn run(args: &RenderArgs, session: &Session, report: &mut RunReport) -> Resu
         Ok([image]) => image,
         Err(images) => Image::beside(&images),
     };
+    if let Some(desk) = session.desk_for(&args.output) {
+        desk.lay_picture(image);
+        report.result = Some(RunResult::Picture { slices: drawn, output: in_memory(None) });
+        return Ok(epilogue::measured(session, report, args.max_memory));
+    }
     let png = image.to_png().map_err(|e| Failure::internal(format!("the picture cannot be encoded: {e}")))?;
     session.progress.check()?;
     write_side(&args.output, &png, session)?;

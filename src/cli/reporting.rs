@@ -10,19 +10,26 @@ use super::streams::is_stream;
 
 /// Writes the report where `--json` and `--report` want it: the file first, because a stream cannot be taken back.
 pub fn emit(report: &RunReport, common: &CommonArgs, session: &Session) -> Result<(), Failure> {
-    if !common.json && common.report.is_none() {
-        return Ok(());
+    to_file(report, common, session)?;
+    if common.json {
+        super::streams::write_stream(text(report)?.as_bytes())?;
     }
+    Ok(())
+}
+
+/// Writes the report where `--report` wants it.
+pub fn to_file(report: &RunReport, common: &CommonArgs, session: &Session) -> Result<(), Failure> {
+    match &common.report {
+        Some(path) => super::side::write_side(path, text(report)?.as_bytes(), session),
+        None => Ok(()),
+    }
+}
+
+fn text(report: &RunReport) -> Result<String, Failure> {
     let mut text = serde_json::to_string_pretty(report)
         .map_err(|e| Failure::internal(format!("the report cannot be written as JSON: {e}")))?;
     text.push('\n');
-    if let Some(path) = &common.report {
-        super::side::write_side(path, text.as_bytes(), session)?;
-    }
-    if common.json {
-        super::streams::write_stream(text.as_bytes())?;
-    }
-    Ok(())
+    Ok(text)
 }
 
 /// Refuses two things on standard output, and a report without a name.

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -13,8 +14,11 @@ use super::files::KeptFiles;
 use super::progress_bar::Meter;
 use super::say::eprintln_quietly;
 use super::shared_args::CommonArgs;
+use super::within::Desk;
 use super::{machine, streams};
+use crate::io::Loaded;
 use crate::io::draft::{Draft, flush_folders, publish};
+use crate::pipeline::{TriangleKind, TriangleSource};
 use crate::progress::{Progress, Stage};
 
 /// One run.
@@ -27,6 +31,8 @@ pub struct Session {
     pub verbose: bool,
     /// Files that must not be written by chance.
     pub kept: KeptFiles,
+    /// Where meshes lie that are in memory, of a run within another program.
+    desk: Option<Rc<Desk>>,
     quiet: bool,
     meter: Arc<Meter>,
     ending: Ending,
@@ -62,11 +68,51 @@ impl Session {
             progress,
             verbose: common.verbose,
             kept: KeptFiles::default(),
+            desk: None,
             quiet: common.quiet,
             meter,
             ending,
             lines,
         })
+    }
+
+    /// One for the owner of a desk: on the caller's threads, without signals and without a word.
+    pub fn within(desk: Rc<Desk>, common: &CommonArgs, start: Instant) -> Self {
+        let deadline = common.timeout.and_then(|timeout| start.checked_add(timeout));
+        let progress = desk.progress.clone();
+        Self {
+            start,
+            progress: deadline.map_or_else(|| progress.clone(), |deadline| progress.clone().with_deadline(deadline)),
+            verbose: false,
+            kept: KeptFiles::default(),
+            desk: Some(desk),
+            quiet: true,
+            meter: Arc::new(Meter::new("", true, false)),
+            ending: Ending::unwatched(),
+            lines: RefCell::default(),
+        }
+    }
+
+    /// The mesh that lies in memory under this name, if one does; it is handed over.
+    pub fn laid(&self, path: &Path) -> Option<Loaded> {
+        self.desk.as_ref()?.take(path)
+    }
+
+    /// Where the triangles of the mesh come from that will be laid on the desk next, and what they are.
+    pub fn lay_sources(&self, sources: Vec<TriangleSource>, kinds: Vec<TriangleKind>) {
+        if let Some(desk) = &self.desk {
+            desk.lay_sources(sources, kinds);
+        }
+    }
+
+    /// Whether a mesh lies in memory under this name.
+    pub fn holds(&self, path: &Path) -> bool {
+        self.desk.as_ref().is_some_and(|desk| desk.holds(path))
+    }
+
+    /// The desk on which the result of this name is laid, if it does not become a file.
+    pub fn desk_for(&self, path: &Path) -> Option<&Desk> {
+        self.desk.as_deref().filter(|_| Desk::takes(path))
     }
 
     /// A line for the user at the end, when all files are in their places, unless `-q`.

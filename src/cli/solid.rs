@@ -14,7 +14,7 @@ use super::holes::{self, LeaveArgs};
 use super::input::{self, Input};
 use super::length::{Scale, Simplify};
 use super::map::{self, Map};
-use super::output::write_verified;
+use super::output::{in_memory, write_verified};
 use super::paint::{self, Arranged};
 use super::report::RunReport;
 use super::result::RunResult;
@@ -26,8 +26,8 @@ use super::{backend, doubts, keep, limits, machine, negative, summary, table, we
 use crate::fit::{FitOptions, rounded};
 use crate::io::{Colours, Format, Loaded, Paint, Unit};
 use crate::ldi::Expression;
-use crate::mesh::{Bounds, Solid, TriMesh, Validity, validate};
-use crate::pipeline::{self, Advice, Opened, Operand, Options, Outcome, Precision, VoxelSize, Work};
+use crate::mesh::{Bounds, Solid, TriMesh, ValidateOptions, Validity, validate};
+use crate::pipeline::{self, Advice, Opened, Operand, Options, Outcome, Precision, TriangleKind, VoxelSize, Work};
 use crate::progress::Stage;
 
 /// Meshes and what is to be made of them.
@@ -260,6 +260,10 @@ fn make(
         let map = Map { mesh: &outcome.solid, kinds, canal_of: &canal_of };
         report.timed(Stage::Map, |_| map::write(path, &map.opened(opened.as_ref()), session))?;
     }
+    if target.is_some_and(|target| session.desk_for(&target.path).is_some()) {
+        let kinds = outcome.kinds(operands.iter().copied());
+        lay_sources(&outcome, kinds, opened.as_ref(), session);
+    }
     if let Some(target) = target.filter(|_| !withheld) {
         let written = match &opened {
             None => {
@@ -305,6 +309,18 @@ fn made(
     }
 }
 
+/// Tells the owner of a desk where the triangles of the result come from.
+fn lay_sources(outcome: &Outcome, kinds: Vec<TriangleKind>, opened: Option<&Opened>, session: &Session) {
+    match opened {
+        None => session.lay_sources(outcome.sources.clone(), kinds),
+        Some(opened) => {
+            let (sources, kinds) =
+                opened.triangles.iter().map(|&t| (outcome.sources[t as usize], kinds[t as usize])).unzip();
+            session.lay_sources(sources, kinds);
+        }
+    }
+}
+
 /// Writes the result and judges the written file.
 pub(super) fn write<'a>(
     solid: &'a Solid,
@@ -313,7 +329,13 @@ pub(super) fn write<'a>(
     session: &Session,
     report: &mut RunReport,
 ) -> Result<OutputEntry, Failure> {
-    write_judged((solid, paint.into()), target, session, report, |read, stored, moved| {
+    let paint = paint.into();
+    if let Some(desk) = session.desk_for(&target.path) {
+        let validity = solid.validity().clone();
+        desk.lay_mesh(solid, validity.clone(), &paint, target.options.unit);
+        return Ok(OutputEntry { validity: Some(validity), ..in_memory(target.options.unit) });
+    }
+    write_judged((solid, paint), target, session, report, |read, stored, moved| {
         judge(read, solid, stored, moved, session)
     })
 }
@@ -331,6 +353,12 @@ fn write_open(
     let colours = pipeline::carry_colours(&opened.mesh, &sources, operands);
     let texture = pipeline::carry_texture(&opened.mesh, &sources, operands);
     let paint = Paint { colours: colours.as_ref(), texture: texture.as_ref(), beside: None };
+    if let Some(desk) = session.desk_for(&target.path) {
+        let options = ValidateOptions { self_intersections: true, weld: false };
+        let validity = validate(&opened.mesh, &options, &session.progress)?;
+        desk.lay_mesh(&opened.mesh, validity.clone(), &paint, target.options.unit);
+        return Ok(OutputEntry { validity: Some(validity), ..in_memory(target.options.unit) });
+    }
     write_judged((&opened.mesh, paint), target, session, report, |read, (made, factor), _| {
         check_same(&read.mesh, made, factor)?;
         Ok(validate(&read.mesh, &read.validate_options(), &session.progress)?)

@@ -194,7 +194,7 @@ pub fn inspection(input: &Input, validity: &Validity, unit: Option<Unit>) -> Vec
     let name = unit.map(|unit| unit.to_string());
     let name = name.as_deref();
     let mut rows = vec![
-        ("file", format!("{}, {}, {}", input.label, input.entry.format, words::bytes(input.entry.bytes))),
+        ("file", format!("{}, {}, {}", input.label, input.entry.format, words::bytes(input.entry.bytes.unwrap_or(0)))),
         ("unit", name.map_or("not stated in the file".into(), str::to_string)),
     ];
     let parts = &input.entry.parts;

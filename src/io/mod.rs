@@ -13,9 +13,10 @@
 //! | | reads | writes |
 //! |---|---|---|
 //! | a mesh in a file | [`read`], [`read_as`] | [`write()`], [`write_with`], [`write_painted`] |
-//! | a mesh in memory | [`read_bytes`] | [`encode`], [`encode_coloured`], [`encode_painted`] |
+//! | a mesh in arrays | [`of_triangles`], [`of_polygons`] | |
+//! | the bytes of a mesh | [`read_bytes`] | [`encode`], [`encode_coloured`], [`encode_painted`] |
 //! | a lattice in a file | [`read_grid`] | [`write_grid`], [`write_grid_as`] |
-//! | a lattice in memory | [`read_grid_bytes`], [`read_grid_within`] | [`encode_grid`] |
+//! | the bytes of a lattice | [`read_grid_bytes`], [`read_grid_within`] | [`encode_grid`] |
 //!
 //! A reader takes the whole file as bytes and returns a soup or an error that names the place. It
 //! trusts no count in the file: memory is taken only for what the bytes back. Nothing is repaired,
@@ -26,6 +27,7 @@
 //! are combined ([`Loaded::rescale`]); [`Loaded::negative`], which is to be subtracted; and
 //! [`Loaded::validate_options`], before the mesh is judged.
 
+mod arrays;
 mod colour;
 mod detect;
 pub(crate) mod draft;
@@ -56,6 +58,7 @@ mod three_mf;
 mod unit;
 mod writing;
 
+pub use arrays::{ArraysError, of_polygons, of_triangles};
 pub(crate) use colour::linear_from_srgb;
 pub use colour::{Carried, Colours, Rgba};
 pub use error::{FileError, FileProblem, Location, Wanted, WriteError, WriteProblem};
