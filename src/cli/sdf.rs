@@ -120,8 +120,9 @@ fn options(args: &SdfArgs, input: &Input, unit: Option<Unit>, validity: &Validit
         )
         .hint("--sign votes, winding and levels go by --inside"));
     }
+    let planes = args.planes;
     let (orient, inside, max_memory) = (args.orient.into(), args.inside.into(), machine::memory_cap(args.max_memory));
-    Ok(DistanceOptions { voxel, band, method, sign, orient, inside, max_memory, backend: args.backend.into() })
+    Ok(DistanceOptions { voxel, band, method, sign, planes, orient, inside, max_memory, backend: args.backend.into() })
 }
 
 /// Refuses another sign for what goes by pseudonormals.
@@ -151,6 +152,7 @@ fn resolved(
         "voxel_as_given": args.voxels.voxel.map(|length| length.to_string()),
         "band": options.band,
         "band_as_given": args.band.to_string(),
+        "planes": options.planes,
         "method": options.method,
         "sign": options.sign,
         "orient": format!("{:?}", options.orient).to_lowercase(),

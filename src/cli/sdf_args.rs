@@ -25,6 +25,9 @@ pub struct SdfArgs {
     /// How far from the surface distances are found, or `full` for everywhere; the lattice reaches as far
     #[arg(long, value_name = "LEN|full", default_value = "4h")]
     pub band: BandChoice,
+    /// Only these planes of z of the lattice, from the first (a multiple of 8) on and before the second: the values are those of the whole
+    #[arg(long, value_name = "FROM,TO", value_parser = parse_planes)]
+    pub planes: Option<[u32; 2]>,
     /// How the distance is found
     #[arg(long, value_enum, default_value_t = MethodChoice::Exact)]
     pub method: MethodChoice,
@@ -58,4 +61,10 @@ pub struct SdfArgs {
     /// Flags of every verb.
     #[command(flatten)]
     pub common: CommonArgs,
+}
+
+/// Two whole numbers, the smaller one first.
+fn parse_planes(text: &str) -> Result<[u32; 2], String> {
+    let numbers = text.split_once(',').and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
+    numbers.filter(|[a, b]: &[u32; 2]| a < b).ok_or_else(|| "two numbers of planes such as 0,64 are needed".into())
 }

@@ -78,6 +78,15 @@ impl Bricks {
         self.slots.entry(brick).or_insert(Slot::Inside);
     }
 
+    /// The same bricks, each from `from` on counted from there.
+    pub fn counted_from(&self, from: IVec3) -> Self {
+        Self {
+            active: self.active.iter().map(|&brick| brick - from).collect(),
+            slots: self.slots.iter().map(|(&brick, &slot)| (brick - from, slot)).collect(),
+            inside_after: self.inside_after.clone(),
+        }
+    }
+
     /// What is known of brick `brick`.
     #[inline]
     pub fn slot(&self, brick: IVec3) -> Slot {

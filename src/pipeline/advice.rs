@@ -175,6 +175,7 @@ impl Advice for DistanceError {
             Self::Lattice(_) | Self::Exact(_) => Trouble::Voxel,
             Self::Limit(limit) => limit.trouble(),
             Self::NotClosed { problem, .. } => Trouble::NotClosed { problem },
+            Self::Planes { .. } => Trouble::Options,
             Self::Levels(_) => Trouble::NoRoom,
             Self::Nothing(why) => Trouble::Nothing(why),
             Self::Device { .. } => Trouble::Device,

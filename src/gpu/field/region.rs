@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn parts_and_halves_hold_every_brick_once() {
-        let whole = Region::whole(&Scope { end: IVec3::new(200, 72, 104), band: 40.0 });
+        let whole = Region::whole(&Scope { end: IVec3::new(200, 72, 104), band: 40.0, planes: [0, 104] });
         assert_eq!((whole.size, whole.across), (64, IVec3::new(4, 2, 2)));
         let mut rest = whole.parts(3);
         assert_eq!(rest.len(), 4);

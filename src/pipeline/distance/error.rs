@@ -28,6 +28,19 @@ pub enum DistanceError {
         /// What is wrong with the surface, as a sentence.
         problem: String,
     },
+    /// The planes are not there, or the method makes no planes alone.
+    #[error(
+        "planes {from} to {to} cannot be made alone: they must lie in the lattice, which has {there}, the first must be a multiple of 8, and the method \
+         exact, on the main processor"
+    )]
+    Planes {
+        /// The first plane.
+        from: u32,
+        /// The one after the last.
+        to: u32,
+        /// Planes of the lattice.
+        there: u32,
+    },
     /// The voxel size, or the band, cannot be used with these coordinates.
     #[error(transparent)]
     Lattice(#[from] LatticeError),

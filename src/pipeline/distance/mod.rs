@@ -6,13 +6,15 @@ mod options;
 pub use error::DistanceError;
 pub use options::{DistanceMethod, DistanceOptions, DistanceSign};
 
+use std::sync::Arc;
+
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::backend::{self, FieldError};
+use crate::backend::{self, Backend, FieldError};
 use crate::digits;
-use crate::lattice::{BRICK, DistanceField, Lattice, Slot};
+use crate::lattice::{BRICK, DistanceField, Grid, Lattice, Slot};
 use crate::ldi::{Expression, MAX_VOXELS};
 use crate::mesh::{TriMesh, ValidateOptions, validate};
 use crate::orient::OrientReport;
@@ -115,6 +117,7 @@ pub fn distance(
     let frame = input.bounds().map_or_else(Frame::default, |bounds| Frame::around(&bounds));
     let input = &*frame.local(input);
     let (lattice, band) = place(input, options)?;
+    check_planes(options, &lattice)?;
     let needed = plan(input, &lattice, band, options).memory;
     if let Some(allowed) = options.max_memory.filter(|&allowed| needed > allowed) {
         return Err(LimitError::Memory { needed, allowed, voxel_that_fits: None }.into());
@@ -138,11 +141,35 @@ pub fn distance(
         _ => run.of_soup(input, &mut stages, &mut report)?,
     };
     report.stages = stages.finish();
-    let mut outcome =
-        DistanceOutcome { field: DistanceField { lattice: frame.global_lattice(lattice), ..field }, report };
+    let field = DistanceField { lattice: frame.global_lattice(lattice), ..field };
+    let field = match options.planes {
+        Some(planes) => planes_of(field, planes),
+        None => field,
+    };
+    let mut outcome = DistanceOutcome { field, report };
     outcome.report.vote.iter_mut().for_each(|vote| frame.votes(vote));
     outcome.describe(band);
     Ok(outcome)
+}
+
+/// Refuses planes that are not there, that cut bricks, and those of methods that need the whole.
+fn check_planes(options: &DistanceOptions, lattice: &Lattice) -> Result<(), DistanceError> {
+    let Some([from, to]) = options.planes else { return Ok(()) };
+    let there = lattice.dims.z as u32;
+    let right = from < to && to <= there && from.is_multiple_of(BRICK as u32);
+    match right && options.method == DistanceMethod::Exact && options.backend != Backend::Gpu {
+        true => Ok(()),
+        false => Err(DistanceError::Planes { from, to, there }),
+    }
+}
+
+/// Some planes of a field.
+fn planes_of(field: DistanceField, [from, to]: [u32; 2]) -> DistanceField {
+    let mut lattice = field.lattice;
+    lattice.origin.z += f64::from(from) * lattice.h;
+    lattice.dims.z = (to - from) as i32;
+    let bricks = field.grid.bricks.counted_from(IVec3::new(0, 0, from as i32 / BRICK));
+    DistanceField { lattice, grid: Grid { bricks: Arc::new(bricks), ..field.grid }, ..field }
 }
 
 /// Refuses a surface that the method would give a wrong field for.
@@ -176,9 +203,10 @@ fn place(input: &TriMesh, options: &DistanceOptions) -> Result<(Lattice, Band), 
 }
 
 fn plan(input: &TriMesh, lattice: &Lattice, band: Band, options: &DistanceOptions) -> DistancePlan {
-    let exact = match options.method {
-        DistanceMethod::Characteristics => characteristics::cost(input, lattice, band),
-        DistanceMethod::Exact | DistanceMethod::Prism | DistanceMethod::Robust => exact::cost(input, lattice, band),
+    let exact = match (options.method, options.planes) {
+        (DistanceMethod::Characteristics, _) => characteristics::cost(input, lattice, band),
+        (_, Some(planes)) => exact::cost_of_planes(input, lattice, band, planes),
+        _ => exact::cost(input, lattice, band),
     };
     let all = lattice.dims.as_dvec3().element_product();
     let (mut memory, mut seconds) = (BASE_BYTES + exact.memory as f64, exact.seconds);
@@ -229,6 +257,10 @@ impl Making<'_> {
         report: &mut DistanceReport,
     ) -> Result<DistanceField, DistanceError> {
         let options = ExactOptions { band: self.band, max_memory: None };
+        if let Some(planes) = self.options.planes {
+            let planes = planes.map(|plane| plane as i32);
+            return Ok(exact::exact_planes(mesh, &self.lattice, sign, &options, planes, self.progress)?);
+        }
         let made = backend::exact(mesh, &self.lattice, sign, &options, self.options.backend, self.progress);
         let (field, made_by) = made.map_err(|error| match error {
             FieldError::Field(error) => error.into(),

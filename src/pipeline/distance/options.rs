@@ -79,6 +79,9 @@ pub struct DistanceOptions {
     /// What tells inside from outside; [`DistanceMethod::Robust`] goes by the votes always,
     /// [`DistanceMethod::Characteristics`] and [`DistanceMethod::Prism`] by pseudonormals.
     pub sign: DistanceSign,
+    /// Some planes of z of the lattice alone, from the first on and before the second: the values are those of the whole, to the last bit. The first is a
+    /// multiple of eight. For [`DistanceMethod::Exact`] on the main processor only; `None`: all.
+    pub planes: Option<[u32; 2]>,
     /// Which processor makes the exact field; the others are made by the main one.
     pub backend: Backend,
     /// Orientation of the input, unless the sign is by pseudonormals.
@@ -98,6 +101,7 @@ impl DistanceOptions {
             band: None,
             method: DistanceMethod::Exact,
             sign: DistanceSign::Votes,
+            planes: None,
             backend: Backend::default(),
             orient: OrientMode::Auto,
             inside: Inside::default(),

@@ -153,6 +153,7 @@ impl<'a> FieldBuilder<'a> {
             band: Some(known),
             method,
             sign,
+            planes: None,
             backend: self.options.backend,
             orient: self.options.orient,
             inside: self.options.inside,

@@ -72,7 +72,7 @@ impl BlockDistance {
     }
 
     fn scope(&self) -> Scope {
-        Scope { end: IVec3::MAX, band: self.reach }
+        Scope { end: IVec3::MAX, band: self.reach, planes: [0, i32::MAX] }
     }
 
     /// What matters to a group.

@@ -1,7 +1,7 @@
 //! What a field costs, estimated before anything is allocated.
 
 use super::Band;
-use crate::lattice::{BRICK_VOXELS, Lattice};
+use crate::lattice::{BRICK, BRICK_VOXELS, Lattice};
 use crate::mesh::TriMesh;
 
 /// Bytes per voxel of an active brick at the peak: the bricks as they are found, and the grid.
@@ -33,11 +33,39 @@ pub fn cost(mesh: &TriMesh, lattice: &Lattice, band: Band) -> Cost {
         Band::Full => all,
         Band::Within(h) => around(mesh, lattice, h + OVERHANG).min(all).max(BRICK_VOXELS as f64),
     };
-    let triangles = mesh.triangles.len() as f64;
-    Cost {
-        voxels: voxels as u64,
-        memory: (BYTES_PER_VOXEL * voxels + BYTES_PER_TRIANGLE * triangles) as u64,
-        seconds: SECONDS_PER_VOXEL * voxels + SECONDS_PER_TRIANGLE * triangles,
+    Cost::of(voxels, mesh.triangles.len())
+}
+
+/// The same of some planes of z alone, from the first on and before the second: as much of the whole as there is surface near them.
+pub fn cost_of_planes(mesh: &TriMesh, lattice: &Lattice, band: Band, [from, to]: [u32; 2]) -> Cost {
+    let whole = cost(mesh, lattice, band);
+    let planes = f64::from(to.saturating_sub(from).next_multiple_of(BRICK as u32));
+    let all = planes * lattice.dims.as_dvec3().max(glam::DVec3::splat(8.0)).truncate().element_product();
+    let Band::Within(h) = band else { return Cost::of(all, mesh.triangles.len()) };
+    let reach = h + OVERHANG;
+    let near = |t: &usize| {
+        let z = mesh.corners(*t).map(|p| lattice.to_lattice(p).z);
+        let (low, high) = (z[0].min(z[1]).min(z[2]), z[0].max(z[1]).max(z[2]));
+        low <= f64::from(to) + reach && high >= f64::from(from) - reach
+    };
+    let area = |t: usize| {
+        let [a, b, c] = mesh.corners(t);
+        (b - a).cross(c - a).length()
+    };
+    let total: f64 = (0..mesh.triangles.len()).map(area).sum();
+    let part: f64 = (0..mesh.triangles.len()).filter(near).map(area).sum();
+    let share = if total > 0.0 { part / total } else { 1.0 };
+    Cost::of((whole.voxels as f64 * share).min(all), mesh.triangles.len())
+}
+
+impl Cost {
+    fn of(voxels: f64, triangles: usize) -> Self {
+        let triangles = triangles as f64;
+        Self {
+            voxels: voxels as u64,
+            memory: (BYTES_PER_VOXEL * voxels + BYTES_PER_TRIANGLE * triangles) as u64,
+            seconds: SECONDS_PER_VOXEL * voxels + SECONDS_PER_TRIANGLE * triangles,
+        }
     }
 }
 

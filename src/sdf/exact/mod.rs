@@ -23,7 +23,7 @@ use glam::{DVec3, IVec3};
 use rayon::prelude::*;
 
 pub use blocks::BlockDistance;
-pub use cost::{Cost, cost};
+pub use cost::{Cost, cost, cost_of_planes};
 pub use of_solid::SolidDistance;
 pub use point::{ExactDistance, Nearest, PointSign};
 pub use slabs::{Slab, Slabs};
@@ -122,11 +122,36 @@ pub fn exact(
     progress: &Progress,
 ) -> Result<DistanceField, ExactError> {
     let needed = cost(mesh, lattice, options.band).memory;
-    whole(mesh, lattice, sign, options, needed, progress, |scope| {
-        let features = Features::of(mesh, lattice, scope.band);
-        progress.check()?;
-        Ok(tiles::bricks(&features, scope, progress)?)
-    })
+    whole(mesh, lattice, sign, options, needed, progress, |scope| found(mesh, lattice, scope, progress))
+}
+
+/// The same values in some planes of z alone, from the first on and before the second, which are multiples of eight or beyond the lattice. All else is
+/// told to lie outside. Time and memory grow with what lies in these planes; `options.max_memory` is not looked at.
+///
+/// # Errors
+/// See [`ExactError`].
+pub fn exact_planes(
+    mesh: &TriMesh,
+    lattice: &Lattice,
+    sign: Sign<'_>,
+    options: &ExactOptions,
+    planes: [i32; 2],
+    progress: &Progress,
+) -> Result<DistanceField, ExactError> {
+    let scope = checked_scope(mesh, lattice, options, 0)?;
+    let scope = Scope {
+        planes: planes.map(|plane| (plane + BRICK - 1) / BRICK * BRICK).map(|plane| plane.min(scope.end.z)),
+        ..scope
+    };
+    let mut raw = assemble(found(mesh, lattice, &scope, progress)?, &scope);
+    sides::settle(&mut raw, mesh, lattice, sign, progress)?;
+    Ok(DistanceField::in_voxels(*lattice, raw.grid))
+}
+
+fn found(mesh: &TriMesh, lattice: &Lattice, scope: &Scope, progress: &Progress) -> Result<Vec<Filled>, ExactError> {
+    let features = Features::of(mesh, lattice, scope.band);
+    progress.check()?;
+    Ok(tiles::bricks(&features, scope, progress)?)
 }
 
 /// The field whose bricks `bricks` finds, which takes `needed` bytes: checked before, and given its sides after.
@@ -168,7 +193,7 @@ fn scope(lattice: &Lattice, band: Band, bounds: &Bounds) -> Result<Scope, ExactE
         Band::Within(h) => return Err(ExactError::Band(h)),
         Band::Full => farthest,
     };
-    Ok(Scope { end, band })
+    Ok(Scope { end, band, planes: [0, end.z] })
 }
 
 /// No voxel is farther from the surface than this, in h: it is the farthest that a corner of the lattice is from a
@@ -184,6 +209,8 @@ struct Raw {
     grid: Grid<f32>,
     band: f32,
     end: IVec3,
+    /// The planes of z that are wanted.
+    planes: [i32; 2],
 }
 
 fn assemble(mut filled: Vec<Filled>, scope: &Scope) -> Raw {
@@ -191,5 +218,5 @@ fn assemble(mut filled: Vec<Filled>, scope: &Scope) -> Raw {
     let bricks = Arc::new(Bricks::new(filled.iter().map(|filled| filled.brick)));
     let values = filled.into_par_iter().map(|filled| *filled.values).collect();
     let band = scope.band as f32;
-    Raw { grid: Grid { bricks, values, inside: -band, outside: band }, band, end: scope.end }
+    Raw { grid: Grid { bricks, values, inside: -band, outside: band }, band, end: scope.end, planes: scope.planes }
 }

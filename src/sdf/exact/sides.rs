@@ -105,14 +105,15 @@ impl PointQuery<'_> {
         let mut next = active.iter().enumerate().peekable();
         for row in 0..counts.y * counts.z {
             let (y, z) = (row % counts.y, row / counts.y);
+            let wanted = (raw.planes[0]..raw.planes[1]).contains(&(z * BRICK));
             let of_row = |b: &IVec3| b.y == y && b.z == z;
             let first = next.peek().filter(|(_, b)| of_row(b)).map(|&(n, b)| (n, b.x));
             let (inside, until) = match first {
                 Some((_, 0)) => (false, 0),
                 Some((n, x)) => (grid.values[n][0] < 0.0, x),
-                None => (self.is_inside(IVec3::new(0, y, z) * BRICK), counts.x),
+                None => (wanted && self.is_inside(IVec3::new(0, y, z) * BRICK), counts.x),
             };
-            if inside {
+            if inside && wanted {
                 (0..until).for_each(|x| bricks.set_inside(IVec3::new(x, y, z)));
             }
             while next.next_if(|(_, b)| of_row(b)).is_some() {}
@@ -240,7 +241,8 @@ fn settle_rest(
     let [x, y, z] = (raw.end / BRICK).to_array().map(|count| count as usize);
     let settled = |values: &mut Values, n: usize| {
         let brick = IVec3::from([n % x, n / x % y, n / (x * y)].map(|k| k as i32));
-        if matches!(old.slot(brick), Slot::Active(_)) {
+        let wanted = (raw.planes[0]..raw.planes[1]).contains(&(brick.z * BRICK));
+        if !wanted || matches!(old.slot(brick), Slot::Active(_)) {
             return Ok(None);
         }
         values.fill(band);

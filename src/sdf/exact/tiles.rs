@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::descend::{Filled, Lists, TILE, Worker};
 use super::feature::{EdgeFeature, FaceFeature, Features, VertexFeature};
+use crate::lattice::BRICK;
 use crate::progress::{Progress, Stopped};
 
 /// Regions are larger by this, in h.
@@ -23,6 +24,15 @@ pub(crate) struct Scope {
     pub end: IVec3,
     /// In h; finite.
     pub band: f64,
+    /// The first plane of z that is wanted and the one after the last, multiples of eight.
+    pub planes: [i32; 2],
+}
+
+impl Scope {
+    /// Whether cubes of `size` voxels from the plane `low` of z on have planes that are wanted.
+    pub(crate) fn wants(&self, low: i32, size: i32) -> bool {
+        low < self.planes[1] && low.saturating_add(size) > self.planes[0]
+    }
 }
 
 /// A cube of voxels.
@@ -166,11 +176,12 @@ fn halve(
 ) -> Result<Vec<Filled>, Stopped> {
     progress.check()?;
     let mut out = Vec::new();
-    if lists.len() == 0 || block.base.cmpge(scope.end).any() {
+    if lists.len() == 0 || block.base.cmpge(scope.end).any() || !scope.wants(block.base.z, block.size) {
         return Ok(out);
     }
     if block.size == TILE {
         worker.tile(block.base, scope.end, features, &lists, scope.band as f32, &mut out);
+        out.retain(|filled| scope.wants(filled.brick.z * BRICK, BRICK));
         return Ok(out);
     }
     let children: Vec<Block> = block.children().collect();

@@ -2,6 +2,7 @@
 
 mod characteristics;
 mod lattices;
+mod planes;
 mod levels;
 mod points;
 mod prism;
