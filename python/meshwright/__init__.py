@@ -14,7 +14,7 @@ Signed distances are negative inside.
 
 from ._made import KINDS, Colours, Grid, Mesh, Part
 from ._native import __version__
-from .asked import ClosestPoints, closest_point, contains, read, signed_distance, write
+from .asked import ClosestPoints, closest_point, contains, plan, read, signed_distance, write
 from .errors import *  # noqa: F403
 from .errors import __all__ as _errors
 from .verbs import *  # noqa: F403
@@ -30,6 +30,7 @@ __all__ = [
     "__version__",
     "closest_point",
     "contains",
+    "plan",
     "read",
     "signed_distance",
     "write",

@@ -15,7 +15,7 @@ from ._given import MeshLike, as_given, as_points
 from ._made import Grid, Mesh
 from .errors import MeshwrightWarning, failure
 
-__all__ = ["ClosestPoints", "closest_point", "contains", "read", "signed_distance", "write"]
+__all__ = ["ClosestPoints", "closest_point", "contains", "plan", "read", "signed_distance", "write"]
 
 
 class ClosestPoints(NamedTuple):
@@ -70,6 +70,18 @@ def write(
     # What is written may take the place of what was read: it is in memory.
     _, report = call("convert", [mesh], {**options, "force": True}, result=None)
     return report
+
+
+def plan(verb: str, *meshes: MeshLike, **options: Any) -> dict[str, Any]:
+    """What a call would cost, without doing it: the lattice, memory in bytes, seconds on one core. ``verb`` is the name of a function that makes solids, or
+    ``"sdf"``; the options are those of the function.
+
+    >>> import meshwright as mw
+    >>> mw.plan("sdf", "testdata/hollow_ball.stl", resolution=64)["dims"]
+    [73, 73, 73]
+    """
+    _, report = call(verb, list(meshes), {**options, "plan": True}, result=None)
+    return dict(report["result"]["plan"])
 
 
 def contains(mesh: MeshLike, points: ArrayLike, *, threads: int | None = None) -> NDArray[np.bool_]:

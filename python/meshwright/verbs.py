@@ -1,4 +1,4 @@
-"""One function for each verb of the command line. This file is made by `generate.py`; do not edit it."""
+"""One function for each verb of the command line. This file is made by `tools/python_verbs.py`; do not edit it."""
 
 from __future__ import annotations
 
@@ -919,6 +919,7 @@ def sdf(
     resolution: int | None = None,
     voxel: Length | None = None,
     band: Length | None = None,
+    planes: str | Sequence[int] | None = None,
     method: Literal["exact", "characteristics", "prism", "robust"] | None = None,
     backend: Literal["auto", "cpu", "gpu"] | None = None,
     sign: Literal["votes", "pseudonormal", "winding", "levels"] | None = None,
@@ -938,6 +939,7 @@ def sdf(
     - ``resolution``: Voxels along the longest side of the bounding box (default: 256).
     - ``voxel``: Size of a voxel, instead of resolution.
     - ``band``: How far from the surface distances are found, or ``full`` for everywhere; the lattice reaches as far (default: 4h).
+    - ``planes``: Only these planes of z of the lattice, from the first (a multiple of 8) on and before the second: the values are those of the whole.
     - ``method``: How the distance is found (default: exact).
     - ``backend``: Which processor measures: ``auto`` is the main one; ``gpu`` a graphics adapter, for method exact, the same but for rounding
       (default: auto).
@@ -957,7 +959,7 @@ def sdf(
     >>> grid.values.dtype, grid.values.ndim
     (dtype('float32'), 3)
     """
-    options: dict[str, Any] = {"resolution": resolution, "voxel": voxel, "band": band, "method": method, "backend": backend, "sign": sign, "orient": orient, "inside": inside, "max_memory": max_memory, "in_format": in_format, "unit": unit, "timeout": timeout}
+    options: dict[str, Any] = {"resolution": resolution, "voxel": voxel, "band": band, "planes": planes, "method": method, "backend": backend, "sign": sign, "orient": orient, "inside": inside, "max_memory": max_memory, "in_format": in_format, "unit": unit, "timeout": timeout}
     made, _ = call("sdf", [mesh], options, result="nrrd", threads=threads, progress=progress)
     return cast(Grid, made[0])
 

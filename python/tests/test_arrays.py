@@ -83,6 +83,17 @@ def test_sdf_is_the_distance() -> None:
     assert np.abs(grid.values - truth).max() < 1e-6
 
 
+def test_planes_joined_are_the_whole() -> None:
+    mesh = mw.read("testdata/broken_mug.obj")
+    whole = mw.sdf(mesh, resolution=40)
+    count = mw.plan("sdf", mesh, resolution=40)["dims"][2]
+    parts = [mw.sdf(mesh, resolution=40, planes=(low, min(low + 16, count))) for low in range(0, count, 16)]
+    assert whole.values.shape[2] == count
+    assert np.array_equal(np.concatenate([part.values for part in parts], axis=2), whole.values)
+    with pytest.raises(mw.UsageError):
+        mw.sdf(mesh, resolution=40, planes=(3, 8))
+
+
 def test_grids_are_written(tmp_path, run) -> None:
     mesh = mw.repair("testdata/hollow_ball.stl", resolution=32)
     mesh.write(tmp_path / "ball.ply")

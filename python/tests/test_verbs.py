@@ -169,5 +169,5 @@ def test_two_processes_of_multiprocessing() -> None:
 
 
 def test_the_functions_are_those_of_the_program() -> None:
-    told = subprocess.run([sys.executable, "python/generate.py", "--check"], cwd=ROOT, capture_output=True, text=True)
+    told = subprocess.run([sys.executable, "tools/python_verbs.py", "--check"], cwd=ROOT, capture_output=True, text=True)
     assert told.returncode == 0, told.stderr

@@ -1,7 +1,7 @@
-"""Makes `meshwright/verbs.py`: one function for each verb of the command line, with its flags as keywords, from the program's own list of them.
+"""Makes `python/meshwright/verbs.py`: one function for each verb of the command line, with its flags as keywords, from the program's own list of them.
 
-    python generate.py           writes the file
-    python generate.py --check   fails where the file is not what would be written
+    python tools/python_verbs.py           writes the file
+    python tools/python_verbs.py --check   fails where the file is not what would be written
 
 The module must be installed, because it is asked for the flags.
 """
@@ -25,7 +25,7 @@ LEFT_OUT = {
 LENGTH = ("LEN", "LEN|off", "LEN|full", "VOLUME", "LEN|PLANE", "AXIS[=AT]")
 NUMBERS = {"N": "int", "PIXELS": "int", "DEG": "float", "R": "float", "LIMIT": "float", "SIZE": "str | int", "DUR": "str | float"}
 LISTS = {"all|N,N": "str | Sequence[int]", "D@X,Y,Z": "str | Sequence[str]", "X,Y,Z": "str | Sequence[float]"}
-LISTS |= {"LOW,HIGH": "str | Sequence[float]", "DEFECT": "str | Sequence[str]", "F|X,Y,Z": "str | float | Sequence[float]"}
+LISTS |= {"FROM,TO": "str | Sequence[int]", "LOW,HIGH": "str | Sequence[float]", "DEFECT": "str | Sequence[str]", "F|X,Y,Z": "str | float | Sequence[float]"}
 
 #: For each verb: its parameters before the keywords, what it is called with, the format of its result, what it returns, and its documentation.
 ONE = ("mesh: MeshLike", "[mesh]")
@@ -283,7 +283,7 @@ def body(name: str, positional: str, result: str | None) -> list[str]:
     return [f"    made, _ = {run.format(wanted)}", f"    return cast({kind}, made[0])"]
 
 
-HEAD = '''"""One function for each verb of the command line. This file is made by `generate.py`; do not edit it."""
+HEAD = '''"""One function for each verb of the command line. This file is made by `tools/python_verbs.py`; do not edit it."""
 
 from __future__ import annotations
 
@@ -307,11 +307,11 @@ def text() -> str:
 
 
 def main() -> int:
-    path = Path(__file__).parent / "meshwright" / "verbs.py"
+    path = Path(__file__).parents[1] / "python" / "meshwright" / "verbs.py"
     made = text()
     if "--check" in sys.argv:
         if path.read_text() != made:
-            print("meshwright/verbs.py is not what generate.py makes: run it", file=sys.stderr)
+            print("python/meshwright/verbs.py is not what tools/python_verbs.py makes: run it", file=sys.stderr)
             return 1
         return 0
     path.write_text(made)
