@@ -96,9 +96,17 @@ pub enum Verb {
     /// List the graphics adapters, and what --backend would take
     #[command(after_help = EXIT_CODES)]
     Devices(DevicesArgs),
+    /// Print the licences of the program and of all that it is built of
+    #[command(after_help = EXIT_CODES)]
+    Licenses,
     /// Print the JSON schema of the reports that --json and --report write
     #[command(after_help = EXIT_CODES)]
     Schema,
+}
+
+/// The command line as a whole, for what is made of it: manual pages, completions.
+pub fn command() -> clap::Command {
+    Cli::command()
 }
 
 /// Parses the arguments of the program, and fills in what a preset sets.

@@ -36,6 +36,7 @@ mod inspect;
 mod inspect_args;
 mod keep;
 mod length;
+mod licenses;
 mod limits;
 mod machine;
 mod maker;
@@ -84,6 +85,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::ldi::Expression;
 use crate::morphology::Operation;
 use args::Verb;
+pub use args::command;
 use exit::{Exit, Failure};
 use files::{KeptFiles, Made};
 use report::RunReport;
@@ -208,6 +210,7 @@ fn dispatch(verb: &Verb, host: &Host) -> Exit {
             let job = Job { inputs, made, ..Job::new("render", &args.common) };
             run(host, job, |session, report| render::run(args, session, report))
         }
+        Verb::Licenses => licenses::run(),
         Verb::Schema => schema::run(),
     }
 }
