@@ -3,6 +3,7 @@
 mod args;
 mod backend;
 mod base;
+mod batch;
 mod boolean;
 mod change;
 mod choices;
@@ -197,6 +198,7 @@ fn dispatch(verb: &Verb) -> Exit {
             let job = Job { inputs, made, ..Job::new("render", &args.common) };
             run(job, |session, report| render::run(args, session, report))
         }
+        Verb::Batch(args) => batch::run(args),
         Verb::Schema => schema::run(),
     }
 }
