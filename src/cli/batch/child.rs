@@ -1,6 +1,6 @@
 //! The process of one job: begun, watched, and ended when it must be.
 
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
@@ -74,7 +74,11 @@ pub fn run(job: &Job, threads: usize, interrupts: &Interrupts, resident: &Atomic
     let start = Instant::now();
     let mut child = match begin(job, threads) {
         Ok(child) => child,
-        Err(why) => return Ended { cause: Some(Cause::NotBegun(why)), ..Ended::default() },
+        Err(error) => {
+            let wanting = matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::OutOfMemory);
+            let why = format!("its process cannot be started: {}", plain_reason(&error));
+            return Ended { cause: Some(Cause::NotBegun { why, wanting }), ..Ended::default() };
+        }
     };
     if let Some(cap) = job.each.max_memory {
         signals::limit_memory(&child, cap.max(LEAST_CAP).saturating_mul(2).saturating_add(UNTOUCHED));
@@ -90,13 +94,12 @@ pub fn run(job: &Job, threads: usize, interrupts: &Interrupts, resident: &Atomic
     ended
 }
 
-fn begin(job: &Job, threads: usize) -> Result<Child, String> {
-    let cannot = |error: std::io::Error| format!("its process cannot be started: {}", plain_reason(&error));
-    let mut command = Command::new(std::env::current_exe().map_err(cannot)?);
+fn begin(job: &Job, threads: usize) -> std::io::Result<Child> {
+    let mut command = Command::new(std::env::current_exe()?);
     command.args(job.arguments(threads)).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
     command.env(machine::PARENT, std::process::id().to_string());
     signals::set_apart(&mut command);
-    command.spawn().map_err(cannot)
+    command.spawn()
 }
 
 /// Reads what a process says until nothing can come any more, and then hands over the end of it. Nothing comes, too, where no thread can be had.

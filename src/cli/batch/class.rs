@@ -39,8 +39,13 @@ pub enum Cause {
     Memory(u64),
     /// The whole batch was interrupted.
     Interrupted,
-    /// It could not begin, for this reason.
-    NotBegun(String),
+    /// It could not begin.
+    NotBegun {
+        /// A sentence.
+        why: String,
+        /// Whether memory, or another process, could not be had.
+        wanting: bool,
+    },
 }
 
 /// How a process ended.
@@ -75,7 +80,8 @@ impl Class {
             (_, Some(Cause::Timeout)) => Self::Timeout,
             (_, Some(Cause::Memory(_))) => Self::Memory,
             (_, Some(Cause::Interrupted)) => Self::Interrupted,
-            (_, Some(Cause::NotBegun(_))) => Self::Crashed,
+            (_, Some(Cause::NotBegun { wanting: true, .. })) => Self::Memory,
+            (_, Some(Cause::NotBegun { wanting: false, .. })) => Self::Crashed,
             (Some(code), None) => Self::of_code(code),
             (None, None) => match status.signal {
                 Some(signal) if OF_BUGS.contains(&signal) => Self::Crashed,

@@ -33,6 +33,7 @@ pub fn all(args: &BatchArgs, program: &Command) -> Result<Vec<Job>, Failure> {
             .hint("files, folders or patterns after the verb, or --manifest FILE.jsonl"));
     }
     check_outputs(&jobs)?;
+    check_endless(&jobs)?;
     check::check_all(&jobs)?;
     jobs.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(jobs)
@@ -117,6 +118,18 @@ fn check_outputs(jobs: &[Job]) -> Result<(), Failure> {
         if over.is_some() {
             let failure = Failure::usage(format!("{} is an input and would be overwritten", job.output.display()));
             return Err(failure.hint("another folder after --out"));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses jobs that may wait for ever: of a pipe or a device nobody knows whether it ends.
+fn check_endless(jobs: &[Job]) -> Result<(), Failure> {
+    let special = |path: &PathBuf| path.metadata().is_ok_and(|data| !data.is_file() && !data.is_dir());
+    for job in jobs.iter().filter(|job| job.bytes.is_none() && job.each.timeout.is_none()) {
+        if let Some(input) = job.inputs.iter().find(|input| special(input)) {
+            let failure = Failure::usage(format!("{} is no regular file, and may never end", input.display()));
+            return Err(failure.hint("--timeout DUR says when to give up"));
         }
     }
     Ok(())

@@ -15,6 +15,9 @@ use super::class::Class;
 /// So often the log is put on the disk; a killed process loses nothing of what it has written before.
 const BETWEEN_FLUSHES: Duration = Duration::from_secs(1);
 
+/// What every line begins with.
+const BEGINNING: &[u8] = b"{\"job\":";
+
 /// What the log says of one job.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
@@ -68,6 +71,9 @@ pub struct Log {
 impl Log {
     /// Begins a log, or goes on with the one that is there, of which the last entry for each job is returned.
     pub fn open(path: &Path, resume: bool) -> Result<(Self, HashMap<String, Entry>), Failure> {
+        if path.metadata().is_ok_and(|data| !data.is_file()) {
+            return Err(Failure::usage(format!("the log {} is no regular file", path.display())));
+        }
         let options = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path);
         let mut file = options.map_err(|error| unwritable(path, &error))?;
         // A file system without locks is no reason to refuse.
@@ -80,6 +86,11 @@ impl Log {
         if !bytes.is_empty() && !resume {
             return Err(Failure::usage(format!("{} is the log of an earlier batch", path.display()))
                 .hint("--resume goes on with it; for a new batch remove it, or give another one with --log"));
+        }
+        if !bytes.is_empty() && !bytes.starts_with(BEGINNING) {
+            return Err(
+                Failure::usage(format!("{} is no log of a batch", path.display())).hint("another name after --log")
+            );
         }
         let (entries, whole) = read(&bytes);
         // What was being written when a batch was killed.
@@ -138,6 +149,16 @@ pub mod tests {
             output_sha256: Some("cd".into()),
             report: None,
         }
+    }
+
+    #[test]
+    fn a_file_that_is_no_log_stays_as_it_is() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("part.stl");
+        std::fs::write(&path, "solid part\nend").expect("written");
+        assert!(Log::open(&path, true).expect_err("no log").message.contains("is no log of a batch"));
+        assert_eq!(std::fs::read(&path).expect("there"), b"solid part\nend");
+        assert!(Log::open(folder.path(), true).expect_err("no log").message.contains("no regular file"));
     }
 
     #[test]

@@ -5,8 +5,9 @@ use super::job::Job;
 /// What a job takes beside what it reads, bytes, before any has shown what it takes.
 const LEAST_MEMORY: u64 = 64 << 20;
 
-/// What a job takes for each byte that it reads: of the meshes measured, repairs took 20 to 45 times a binary file.
-const MEMORY_PER_BYTE: u64 = 40;
+/// What a job takes for each byte that it reads. Of the meshes measured, repairs without voxels took 4 to 28 times the file; what voxels take beside
+/// depends on the resolution, and is learnt.
+const MEMORY_PER_BYTE: u64 = 30;
 
 /// A job takes as long as reading so many bytes even when its file is empty.
 const LEAST_WORK: u64 = 20_000;
@@ -42,8 +43,10 @@ pub struct Running {
 /// The jobs that have not begun.
 #[derive(Debug)]
 pub struct Plan {
-    /// The next first.
+    /// The next last.
     waiting: Vec<Waiting>,
+    /// The work of all of them.
+    work: u64,
     cores: usize,
     most: usize,
     /// What jobs have taken beyond what was expected, bytes, and how many have ended.
@@ -60,22 +63,23 @@ struct Waiting {
     alone: bool,
 }
 
+impl Waiting {
+    fn of(jobs: &[Job], job: usize) -> Self {
+        let Job { bytes, each, .. } = &jobs[job];
+        Self { job, work: work(&jobs[job]), bytes: bytes.unwrap_or(0), cap: each.max_memory, alone: false }
+    }
+}
+
 impl Plan {
     /// Of the jobs whose numbers are `left`, for so many threads and at most so many jobs side by side.
     pub fn new(jobs: &[Job], left: impl IntoIterator<Item = usize>, cores: usize, most: Option<usize>) -> Self {
-        let waiting = |n: usize| Waiting {
-            job: n,
-            work: work(&jobs[n]),
-            bytes: jobs[n].bytes.unwrap_or(0),
-            cap: jobs[n].each.max_memory,
-            alone: false,
-        };
         let mut left: Vec<usize> = left.into_iter().collect();
         // What is no file may wait for ever for somebody to write it: that begins first. Of equal jobs the order is that of their names.
-        left.sort_by_key(|&n| (jobs[n].bytes.is_some(), std::cmp::Reverse(work(&jobs[n])), n));
+        left.sort_by_key(|&n| (jobs[n].bytes.is_none(), work(&jobs[n]), std::cmp::Reverse(n)));
         let cores = cores.max(1);
         Self {
-            waiting: left.into_iter().map(waiting).collect(),
+            work: left.iter().map(|&n| work(&jobs[n])).sum(),
+            waiting: left.into_iter().map(|n| Waiting::of(jobs, n)).collect(),
             cores,
             most: most.unwrap_or(cores).clamp(1, cores),
             excess: (0, 0),
@@ -96,8 +100,9 @@ impl Plan {
             running.is_empty()
                 || (!waiting.alone && free.is_none_or(|free| self.memory(waiting).saturating_add(promised) <= free))
         };
-        let place = self.waiting.iter().position(fits)?;
+        let place = self.waiting.iter().rposition(fits)?;
         let waiting = self.waiting.remove(place);
+        self.work -= waiting.work;
         Some(Start {
             job: waiting.job,
             threads: if waiting.alone { threads } else { self.share(&waiting, threads, places) },
@@ -107,8 +112,7 @@ impl Plan {
 
     /// Of so many free threads those for a job: its share of the work that is left, and no fewer than when all that can begin get the same.
     fn share(&self, job: &Waiting, threads: usize, places: usize) -> usize {
-        let all = job.work + self.waiting.iter().map(|waiting| waiting.work).sum::<u64>();
-        let by_work = (threads as f64 * job.work as f64 / all as f64).round() as usize;
+        let by_work = (threads as f64 * job.work as f64 / (self.work + job.work) as f64).round() as usize;
         let places = places.min(self.waiting.len() + 1);
         by_work.max(threads / places).clamp(1, threads)
     }
@@ -128,15 +132,14 @@ impl Plan {
 
     /// Takes a job back that has failed for want of memory beside others: it runs again when no other does.
     pub fn again(&mut self, jobs: &[Job], job: usize) {
-        let bytes = jobs[job].bytes.unwrap_or(0);
-        self.waiting.push(Waiting { job, work: work(&jobs[job]), bytes, cap: jobs[job].each.max_memory, alone: true });
+        self.waiting.insert(0, Waiting { alone: true, ..Waiting::of(jobs, job) });
+        self.work += work(&jobs[job]);
     }
 
     /// Takes back what could not begin.
-    pub fn put_back(&mut self, jobs: &[Job], start: Start) {
-        let (job, bytes) = (start.job, jobs[start.job].bytes.unwrap_or(0));
-        let waiting = Waiting { job, work: work(&jobs[job]), bytes, cap: jobs[job].each.max_memory, alone: false };
-        self.waiting.insert(0, waiting);
+    pub fn put_back(&mut self, jobs: &[Job], job: usize) {
+        self.waiting.push(Waiting::of(jobs, job));
+        self.work += work(&jobs[job]);
     }
 }
 

@@ -125,7 +125,7 @@ impl Batch<'_> {
                 Ok(_) => beside.push((start, resident)),
                 Err(error) if beside.is_empty() => return Err(machine::no_threads(plain_reason(&error))),
                 Err(_) => {
-                    plan.put_back(self.jobs, start);
+                    plan.put_back(self.jobs, start.job);
                     break;
                 }
             }
@@ -202,7 +202,7 @@ fn entry(job: &Job, threads: usize, ended: Ended, unready: Option<(Class, String
 fn why(class: Class, ended: &Ended) -> String {
     let said = ended.words.lines().find_map(|line| line.strip_prefix("error: "));
     match (&ended.cause, class) {
-        (Some(Cause::NotBegun(why)), _) => why.clone(),
+        (Some(Cause::NotBegun { why, .. }), _) => why.clone(),
         (Some(Cause::Timeout), _) => "its time has passed, and it did not stop; it was ended".into(),
         (Some(Cause::Memory(bytes)), _) => {
             let bytes = super::super::words::bytes(*bytes);
