@@ -155,6 +155,15 @@ fn a_manifest_has_jobs_with_options_of_their_own() {
     assert_eq!(options("fine/a.ply"), serde_json::json!(["--resolution", "32", "--rebuild"]));
     assert_eq!(options("both.stl"), serde_json::json!([]));
 
+    let lines = [
+        serde_json::json!({"input": cube, "output": "thick.off", "options": ["-r", "0.2"]}),
+        serde_json::json!({"input": cube, "output": "thin.off"}),
+    ];
+    fs::write(&manifest, lines.map(|line| line.to_string()).join("\n")).expect("written");
+    run_in(&folder, "batch dilate --manifest OUT/jobs.jsonl --out OUT/grown --radius 0.1 --resolution 24").exits(0);
+    run_in(&folder, "batch dilate --manifest OUT/jobs.jsonl --out OUT/none").exits(2).says(&["line 2", "--radius"]);
+    run_in(&folder, "batch --manifest OUT/jobs.jsonl --out OUT/none --rebuild").exits(2).says(&["belongs to no verb"]);
+
     for (line, words) in [
         (r#"{"input": "a.stl", "colour": 1}"#, "unknown field `colour`"),
         (r#"{"input": "a.stl"}"#, "there is no verb"),

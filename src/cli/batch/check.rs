@@ -9,7 +9,7 @@ use super::super::exit::Failure;
 use super::super::{args, words};
 use super::args::EachArgs;
 use super::job::Job;
-use super::options::{Whose, named, pieces};
+use super::options::{Whose, name, pieces};
 use super::verbs::{self, BatchVerb};
 
 /// Options that a batch sets by itself, or that have no meaning in one.
@@ -43,7 +43,7 @@ pub fn settle(options: &[OsString], verb: &BatchVerb, program: &Command) -> Resu
     let (mut own, mut others) = (Vec::new(), Vec::new());
     for (whose, place) in pieces(options, &each, Some(&command)) {
         let piece = &options[place];
-        match (whose, refused(piece)) {
+        match (whose, refused(piece, &command)) {
             (_, Some((flag, why))) => {
                 return Err(Failure::usage(format!("--{flag} cannot be used in a batch")).hint(why));
             }
@@ -58,19 +58,17 @@ pub fn settle(options: &[OsString], verb: &BatchVerb, program: &Command) -> Resu
 /// The options of `given` that are not among `others`.
 pub fn without(given: Vec<OsString>, others: &[OsString], verb: &BatchVerb, program: &Command) -> Vec<OsString> {
     let nothing = Command::new("job");
-    let command = program.find_subcommand(verb.name);
-    let name = |words: &[OsString]| named(words).map(|(name, _)| name);
+    let command = program.find_subcommand(verb.name).unwrap_or(&nothing);
     let there: HashSet<String> =
-        pieces(others, &nothing, command).filter_map(|(_, place)| name(&others[place])).collect();
-    pieces(&given, &nothing, command)
-        .filter(|(_, place)| name(&given[place.clone()]).is_none_or(|name| !there.contains(&name)))
+        pieces(others, &nothing, Some(command)).filter_map(|(_, place)| name(&others[place], command)).collect();
+    pieces(&given, &nothing, Some(command))
+        .filter(|(_, place)| name(&given[place.clone()], command).is_none_or(|name| !there.contains(&name)))
         .flat_map(|(_, place)| given[place].to_vec())
         .collect()
 }
 
-fn refused(piece: &[OsString]) -> Option<(&'static str, &'static str)> {
-    let short = piece.first().is_some_and(|word| word.to_string_lossy().starts_with("-o"));
-    let name = if short { "output".to_owned() } else { named(piece)?.0 };
+fn refused(piece: &[OsString], command: &Command) -> Option<(&'static str, &'static str)> {
+    let name = name(piece, command)?;
     NOT_HERE.into_iter().find(|(flag, _)| *flag == name)
 }
 

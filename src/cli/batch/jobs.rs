@@ -20,6 +20,9 @@ pub fn all(args: &BatchArgs, program: &Command) -> Result<Vec<Job>, Failure> {
     let mut jobs = Vec::new();
     if let Some(verb) = verb {
         jobs = of_command_line(args, verb, program)?;
+    } else if let Some(option) = args.options.first() {
+        return Err(Failure::usage(format!("{} belongs to no verb", option.to_string_lossy()))
+            .hint("a verb before it, whose options hold for all its jobs; or `options` in the lines of the manifest"));
     }
     if let Some(path) = &args.manifest {
         for line in manifest::read(path)? {
@@ -50,19 +53,15 @@ fn of_command_line(args: &BatchArgs, verb: &'static BatchVerb, program: &Command
         ))
         .hint(r#"--manifest FILE.jsonl, with lines such as {"inputs": ["a.stl", "b.stl"], "output": "c.stl"}"#));
     }
-    // Wrong options are told before files that are not there, which may be values of these options.
-    let example = Job::new(
-        verb,
-        vec!["in.stl".into(); verb.inputs.0],
-        &verb.output_name(Path::new("in.stl"), each.out_format),
-        &args.out,
-    );
     let told = |job: Job| Job { options: options.clone(), each: each.clone(), ..job };
-    check::check_all(&[told(Job { origin: format!("batch {}", verb.name), ..example })])?;
+    let output = |name: &Path| verb.output_name(name, each.out_format);
+    if !args.inputs.is_empty() {
+        // Wrong options are told before files that are not there, which may be values of these options.
+        let example = Job::new(verb, vec!["in.stl".into(); verb.inputs.0], &output(Path::new("in.stl")), &args.out);
+        check::check_all(&[told(Job { origin: format!("batch {}", verb.name), ..example })])?;
+    }
     let found = inputs::gather(&args.inputs, &args.out)?.into_iter();
-    Ok(found
-        .map(|file| told(Job::new(verb, vec![file.path], &verb.output_name(&file.name, each.out_format), &args.out)))
-        .collect())
+    Ok(found.map(|file| told(Job::new(verb, vec![file.path], &output(&file.name), &args.out))).collect())
 }
 
 fn of_line(

@@ -104,11 +104,42 @@ fn values(argument: &Arg, word: &OsStr, after: &[OsString]) -> usize {
     if optional { 1 } else { least }
 }
 
-/// The long name of the option that a piece begins with, and its value where it has one.
-pub fn named(piece: &[OsString]) -> Option<(String, Option<OsString>)> {
-    let text = piece.first()?.to_str()?.strip_prefix("--")?;
-    Some(match text.split_once('=') {
-        Some((name, value)) => (name.to_owned(), Some(value.into())),
-        None => (text.to_owned(), piece.get(1).cloned()),
-    })
+/// The long name of the option that a piece begins with, as `command` has it, or as it is written.
+pub fn name(piece: &[OsString], command: &Command) -> Option<String> {
+    let word = piece.first()?;
+    if let Some(long) = option(command, word).and_then(Arg::get_long) {
+        return Some(long.to_owned());
+    }
+    let text = word.to_str()?.strip_prefix("--")?;
+    Some(text.split_once('=').map_or(text, |(name, _)| name).to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn options_of_the_verb_go_behind_the_others() {
+        let program = super::super::super::args::Cli::command();
+        for (line, expected) in [
+            ("repair a.stl --out d", "repair a.stl --out d"),
+            ("repair a.stl --resolution 64 b.stl --out d", "repair a.stl b.stl --out d -- --resolution 64"),
+            ("--out d repair --resolution=64 a.stl -q", "--out d repair a.stl -q -- --resolution=64"),
+            ("dilate -r 2mm a.stl --jobs 2 --rebuild --out d", "dilate a.stl --jobs 2 --out d -- -r 2mm --rebuild"),
+            ("dilate -r2mm a.stl", "dilate a.stl -- -r2mm"),
+            ("render a.stl --view -1,1,1 --out d", "render a.stl --out d -- --view -1,1,1"),
+            ("repair a.stl -- --rebuild --timeout 5s", "repair a.stl --timeout 5s -- --rebuild"),
+            ("repair a.stl --wrong 7", "repair a.stl 7 -- --wrong"),
+            ("repair --help", "repair --help"),
+        ] {
+            let words = |line: &str| -> Vec<OsString> {
+                ["meshwright", "batch"].into_iter().chain(line.split(' ')).map(OsString::from).collect()
+            };
+            assert_eq!(rearranged(words(line), &program), words(expected), "{line}");
+        }
+        let other: Vec<OsString> = ["meshwright", "repair", "a.stl", "--rebuild"].map(OsString::from).to_vec();
+        assert_eq!(rearranged(other.clone(), &program), other);
+    }
 }

@@ -178,7 +178,7 @@ mod tests {
         let jobs = jobs(&[1_000, 9_000_000, 2_000, 8_000_000, 3_000]);
         let mut plan = Plan::new(&jobs, 0..5, 4, None);
         assert_eq!(begun(&mut plan, PLENTY), [(1, 2), (3, 2)]);
-        assert_eq!(begun(&mut plan, PLENTY), [(4, 1), (2, 1), (0, 2)]);
+        assert_eq!(begun(&mut plan, PLENTY), [(4, 1), (2, 2), (0, 1)]);
         for cores in 1..9 {
             for most in [None, Some(1), Some(3)] {
                 let mut plan = Plan::new(&jobs, 0..5, cores, most);
