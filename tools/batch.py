@@ -4,7 +4,7 @@
     python3 tools/batch.py                      1,000 small meshes, repaired by target/release/meshwright
     python3 tools/batch.py --program PATH --files 200 --rounds 2
 
-Makes the meshes (balls, some with a hole, some with turned triangles, of 80 to 1,280 triangles), runs each alone with one thread, one after
+Makes the meshes (balls, some with a hole, some with turned triangles, of 128 to 2,048 triangles), runs each alone with one thread, one after
 the other, and all of them as a batch; does so in rounds, so that what else the machine does falls on both. Prints the sum of their own times over
 the cores, the time of the batch, and the ratio; exit status 1 when that is more than 1.15, or when a job is not done.
 """
