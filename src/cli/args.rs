@@ -4,6 +4,8 @@ use std::ffi::OsString;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
+use super::batch::args::{BATCH_HELP, BatchArgs};
+use super::batch::options::rearranged;
 use super::boolean::BooleanArgs;
 use super::compare::CompareArgs;
 use super::convert_args::ConvertArgs;
@@ -99,6 +101,9 @@ pub enum Verb {
     /// Print the licences of the program and of all that it is built of
     #[command(after_help = EXIT_CODES)]
     Licenses,
+    /// Do one of the verbs to many files, each in a process of its own, with a log and a way to go on after a stop
+    #[command(after_help = BATCH_HELP)]
+    Batch(BatchArgs),
     /// Print the JSON schema of the reports that --json and --report write
     #[command(after_help = EXIT_CODES)]
     Schema,
@@ -111,7 +116,9 @@ pub fn command() -> clap::Command {
 
 /// Parses the arguments of the program, and fills in what a preset sets.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, clap::Error> {
-    let matches = Cli::command().try_get_matches_from(arguments)?;
+    let command = Cli::command();
+    let arguments = rearranged(arguments.into_iter().collect(), &command);
+    let matches = command.try_get_matches_from(arguments)?;
     let mut cli = Cli::from_arg_matches(&matches)?;
     if let (Some(args), Some((_, given))) = (solid(&mut cli.verb), matches.subcommand()) {
         args.fill_in(given);
@@ -120,7 +127,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Cli, clap:
 }
 
 /// The flags that presets are about, of the verbs that have them.
-fn solid(verb: &mut Verb) -> Option<&mut SolidArgs> {
+pub fn solid(verb: &mut Verb) -> Option<&mut SolidArgs> {
     Some(match verb {
         Verb::Repair(args) => &mut args.solid,
         Verb::Union(args) | Verb::Intersection(args) | Verb::Difference(args) => &mut args.solid,

@@ -3,7 +3,6 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::exit::Exit;
 use crate::arrange::ArrangeError;
 use crate::pipeline::{LimitError, Trouble};
 
@@ -52,20 +51,6 @@ pub enum Class {
 }
 
 impl Class {
-    /// What an exit status alone tells.
-    pub(super) fn of_exit(exit: Exit) -> Self {
-        match exit {
-            Exit::Done | Exit::Internal => Self::Internal,
-            Exit::Usage => Self::Usage,
-            Exit::Limit => Self::Limit,
-            Exit::Input => Self::Input,
-            Exit::Memory => Self::Memory,
-            Exit::Deadline => Self::Deadline,
-            Exit::Write => Self::Write,
-            Exit::Interrupted => Self::Interrupted,
-        }
-    }
-
     /// What the trouble of a pipeline is, and what belongs to it; `None`: what the exit status tells.
     pub(super) fn of_trouble(trouble: &Trouble<'_>) -> Option<(Self, Value)> {
         Some(match trouble {

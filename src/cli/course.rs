@@ -194,7 +194,7 @@ impl Course {
 }
 
 /// A time as one says it.
-fn about(time: Duration) -> String {
+pub fn about(time: Duration) -> String {
     let seconds = time.as_secs_f64().ceil() as usize;
     match seconds {
         0..100 => format!("{seconds} s"),

@@ -102,6 +102,10 @@ impl Ending {
             if self.interrupted.get().is_some_and(|since| since.elapsed() > PATIENCE) {
                 self.abandon(&Stopped::Interrupted.into());
             }
+            // Nobody waits for it any more.
+            if machine::is_orphan() {
+                self.abandon(&Stopped::Interrupted.into());
+            }
             if let Some(shortage) = machine::shortage(max_memory) {
                 self.abandon(&shortage);
             }

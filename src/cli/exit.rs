@@ -54,6 +54,22 @@ impl Exit {
     }
 }
 
+impl Exit {
+    /// What the status alone tells of a failure.
+    fn class(self) -> Class {
+        match self {
+            Self::Done | Self::Internal => Class::Internal,
+            Self::Usage => Class::Usage,
+            Self::Limit => Class::Limit,
+            Self::Input => Class::Input,
+            Self::Memory => Class::Memory,
+            Self::Deadline => Class::Deadline,
+            Self::Write => Class::Write,
+            Self::Interrupted => Class::Interrupted,
+        }
+    }
+}
+
 /// What the user has asked for.
 #[derive(Debug, Clone, Copy)]
 pub struct Asked {
@@ -90,7 +106,7 @@ pub const INPUTS_ALONE: &str = "the inputs alone need that much: a larger --max-
 impl Failure {
     /// A failure without a hint.
     pub fn new(exit: Exit, message: impl Into<String>) -> Self {
-        let (class, message) = (Class::of_exit(exit), message.into());
+        let (class, message) = (exit.class(), message.into());
         Self { exit, class, fields: serde_json::Value::Null, message, place: None, hint: None }
     }
 

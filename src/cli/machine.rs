@@ -142,6 +142,37 @@ pub fn peak_memory() -> Option<u64> {
     of_process("VmHWM:")
 }
 
+/// What a process holds.
+#[derive(Debug, Clone, Copy)]
+pub struct Memory {
+    /// Now, bytes.
+    pub resident: u64,
+    /// At the most, bytes.
+    pub peak: u64,
+}
+
+/// Of another process; Linux only.
+pub fn memory_of(process: u32) -> Option<Memory> {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    Some(Memory { resident: kibibytes(&status, "VmRSS:")?, peak: kibibytes(&status, "VmHWM:")? })
+}
+
+/// The variable of the environment by which a batch tells the processes of its jobs its number.
+pub const PARENT: &str = "MESHWRIGHT_BATCH";
+
+/// Whether this process was started by a batch that is gone.
+#[cfg(unix)]
+pub fn is_orphan() -> bool {
+    let parent = std::env::var(PARENT).ok().and_then(|number| number.parse::<u32>().ok());
+    parent.is_some_and(|parent| parent != std::os::unix::process::parent_id())
+}
+
+/// It cannot be told.
+#[cfg(not(unix))]
+pub fn is_orphan() -> bool {
+    false
+}
+
 fn of_process(field: &str) -> Option<u64> {
     kibibytes(&std::fs::read_to_string("/proc/self/status").ok()?, field)
 }

@@ -79,12 +79,11 @@ fn one_too_many(verb: &Command, extra: &str, words: &[String]) -> Option<Failure
     }
     let count = if files.len() == 1 { "one file" } else { "no more than two files" };
     let failure = Failure::usage(format!("`{name}` takes {count}, and {extra} is one more"));
-    let each = "runs it for each: for f in *.stl; do meshwright";
+    let each = format!("`meshwright batch {name} IN... --out DIR` runs it for each");
     Some(match (name, files.len()) {
-        ("repair", _) => failure.hint(format!(
-            "`meshwright union` makes one solid of several files; the shell {each} repair \"$f\" -o \"repaired/$f\"; done"
-        )),
-        (_, 1) => failure.hint(format!("the shell {each} {name} \"$f\" ...; done")),
+        ("repair", _) => failure.hint(format!("`meshwright union` makes one solid of several files; {each}")),
+        ("split", _) => failure,
+        (_, 1) => failure.hint(each),
         _ => failure,
     })
 }
@@ -109,7 +108,7 @@ mod tests {
             ("repair a.stl b.stl -o c.stl", "meshwright union"),
             ("fix a.stl b.stl c.stl -o d.stl", "`repair` takes one file, and b.stl is one more"),
             ("repair a.stl b.stl", "-o b.stl"),
-            ("inspect a.stl b.stl", "for f in *.stl; do meshwright inspect"),
+            ("inspect a.stl b.stl", "`meshwright batch inspect IN... --out DIR` runs it for each"),
             ("compare a.stl b.stl c.stl", "no more than two files"),
             ("union a.stl -o b.stl", "meshwright repair"),
             ("subtract a.stl -o b.stl", "`difference` combines two files or more"),

@@ -3,6 +3,7 @@
 mod args;
 mod backend;
 mod base;
+mod batch;
 mod boolean;
 mod change;
 mod choices;
@@ -211,6 +212,7 @@ fn dispatch(verb: &Verb, host: &Host) -> Exit {
             run(host, job, |session, report| render::run(args, session, report))
         }
         Verb::Licenses => licenses::run(),
+        Verb::Batch(args) => batch::run(args),
         Verb::Schema => schema::run(),
     }
 }

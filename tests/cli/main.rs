@@ -3,6 +3,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod batch;
+#[cfg(target_os = "linux")]
+mod batch_stops;
 mod compare;
 mod documents;
 mod exact;

@@ -27,6 +27,7 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::Instant;
 
+use super::args::Verb;
 use super::exit::{Exit, Failure};
 use super::files::KeptFiles;
 use super::report::RunReport;
@@ -82,6 +83,9 @@ pub fn call(call: Call) -> Result<Answer, Refusal> {
     arguments.insert(0, env!("CARGO_PKG_NAME").into());
     arguments.extend(["--json", "--quiet"].map(OsString::from));
     let parsed = args::parse(arguments.iter().cloned()).map_err(|error| misunderstood(&error, &arguments[1..]))?;
+    if let Verb::Batch(_) | Verb::Licenses | Verb::Schema = parsed.verb {
+        return Err(Failure::usage("this verb is for the command line alone").into());
+    }
     let meshes = meshes.into_iter().map(|(name, loaded)| (PathBuf::from(name), loaded));
     let desk = Rc::new(Desk::new(meshes, progress));
     catch_unwind(AssertUnwindSafe(|| dispatch(&parsed.verb, &Host::Caller(desk.clone()))))
