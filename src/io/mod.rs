@@ -47,6 +47,7 @@ mod ply;
 mod polygon;
 mod reading;
 mod save;
+mod scene;
 mod sound;
 mod soup;
 mod stl;
@@ -72,6 +73,9 @@ pub use paint::Paint;
 pub use ply::{FaceMap, VertexMap, encode_face_map, encode_vertex_map};
 pub use reading::{read, read_as, read_bytes};
 pub use save::save_bytes;
+pub use scene::{
+    Aside, Flattened, Placement, Scene, SceneMaterial, SceneObject, ScenePart, encode_scene, flattened, read_scene,
+};
 pub use texture::{ImageKind, Material, SideFile, TexCoords, TextureImage, TextureMap, shown_colours};
 pub use unit::{Unit, UnknownUnit};
 pub use writing::{WriteOptions, encode, encode_coloured, encode_painted, write, write_painted, write_with};
