@@ -132,7 +132,8 @@ fn read_stream() -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn unreadable(label: &str, stream: bool, args: &InputArgs, error: &io::FileError) -> Failure {
+/// Why a file cannot be read.
+pub(super) fn unreadable(label: &str, stream: bool, args: &InputArgs, error: &io::FileError) -> Failure {
     let text = error.to_string();
     let message = if text.contains(label) { text } else { format!("{label}: {text}") };
     let failure = Failure::input(message);

@@ -48,6 +48,7 @@ mod polygon;
 mod reading;
 mod save;
 mod scene;
+mod slice;
 mod sound;
 mod soup;
 mod stl;

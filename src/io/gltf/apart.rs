@@ -10,7 +10,6 @@ use serde::Deserialize;
 
 use super::super::error::FileError;
 use super::super::scene::{Aside, MaterialOrigin, Origin, Placement, Source, Unplaced};
-use super::super::text::counted;
 use super::scene::{Reader, tops, walk};
 use super::texture::Looks;
 use super::{Opened, checked, unit};
@@ -53,7 +52,7 @@ pub(super) fn read(mut opened: Opened<'_>, path: Option<&Path>) -> Result<Unplac
         let name = mesh.name().unwrap_or_default().to_owned();
         let stays = posed.contains(&mesh.index());
         if stays && met[mesh.index()] {
-            let what = "mesh with a skeleton or morph targets".into();
+            let what = "skinned or morphing object".into();
             aside.push(Aside { what, name: name.clone() });
         }
         let origin = (!stays).then_some(Origin::Mesh(mesh.index()));
@@ -84,7 +83,8 @@ fn places(
 ) -> Result<Vec<Placed>, FileError> {
     let mut places = Vec::new();
     let Some(tops) = tops(document)? else {
-        let all = (0..document.meshes().len()).map(|mesh| Placed { mesh, name: String::new(), transform: DMat4::IDENTITY });
+        let all =
+            (0..document.meshes().len()).map(|mesh| Placed { mesh, name: String::new(), transform: DMat4::IDENTITY });
         return Ok(all.collect());
     };
     walk(document, &tops, |i, node, transform| {
@@ -133,14 +133,15 @@ fn unused(document: &Document, met: &[bool]) -> Vec<Aside> {
     for mesh in document.meshes() {
         let name = mesh.name().unwrap_or_default().to_owned();
         if !met[mesh.index()] {
-            aside.push(Aside { what: "mesh that is not part of the scene".into(), name });
+            aside.push(Aside { what: "unplaced object".into(), name });
             continue;
         }
-        let is_other = |primitive: &checked::Primitive<'_>| !is_surface(primitive.mode(), primitive.has(Semantic::Positions));
+        let is_other =
+            |primitive: &checked::Primitive<'_>| !is_surface(primitive.mode(), primitive.has(Semantic::Positions));
         let others = checked::primitives(document, &mesh).filter(is_other).count();
         if others > 0 {
             let name = if name.is_empty() { String::new() } else { format!("in {name}") };
-            aside.push(Aside { what: format!("set of lines or points ({})", counted(others, "primitive")), name });
+            aside.push(Aside { what: "line or point set".into(), name });
         }
     }
     aside

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::patch::{Patch, set};
+use super::changed::{Patch, set};
 use super::{OF_LOOKS, READ};
 
 /// Extensions that name no accessors and no views.

@@ -8,9 +8,9 @@ use serde_json::{Value, json};
 use super::super::colour::{Colours, Rgba, linear_from_srgb};
 use super::super::error::WriteError;
 use super::super::scene::Scene;
+use super::changed::{Patch, set};
 use super::content::{Content, Piece};
 use super::pack;
-use super::patch::{Patch, set};
 use crate::io::{Format, Unit};
 
 /// Writes a scene whose coordinates are in `unit`; without one they are written as they are.

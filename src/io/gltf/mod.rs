@@ -4,6 +4,7 @@
 mod accessor;
 mod apart;
 mod buffers;
+mod changed;
 mod checked;
 mod compact;
 mod content;
@@ -24,8 +25,8 @@ use gltf::json;
 use self::buffers::Buffers;
 use self::instancing::Instancing;
 use super::error::{FileError, FileProblem};
-use super::soup::Expansion;
 use super::scene::Unplaced;
+use super::soup::Expansion;
 use super::{Format, Loaded, Unit};
 
 pub(super) use fresh::write_fresh;

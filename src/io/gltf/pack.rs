@@ -11,12 +11,7 @@ use super::{BINARY_CHUNK, JSON_CHUNK, MAGIC};
 use crate::io::Format;
 
 /// Writes a document whose views are all of one buffer.
-pub(super) fn write(
-    mut document: Value,
-    buffer: &[u8],
-    format: Format,
-    out: &mut dyn Write,
-) -> Result<(), WriteError> {
+pub(super) fn write(mut document: Value, buffer: &[u8], format: Format, out: &mut dyn Write) -> Result<(), WriteError> {
     if let Some(members) = document.as_object_mut() {
         members.remove("buffers");
         members.retain(|_, list| list.as_array().is_none_or(|list| !list.is_empty()));
@@ -29,7 +24,8 @@ pub(super) fn write(
     if format == Format::Gltf {
         if !buffer.is_empty() {
             let whole = [buffer, padding].concat();
-            document["buffers"][0]["uri"] = json!(format!("data:application/octet-stream;base64,{}", STANDARD.encode(whole)));
+            document["buffers"][0]["uri"] =
+                json!(format!("data:application/octet-stream;base64,{}", STANDARD.encode(whole)));
         }
         serde_json::to_writer(&mut *out, &document).map_err(std::io::Error::from)?;
         return Ok(out.write_all(b"\n")?);

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::DAffine3;
 use rustc_hash::FxHashMap;
@@ -17,14 +18,14 @@ use super::{Reader, read_all};
 #[derive(Clone, Default)]
 pub(super) struct Section {
     pub(super) name: String,
-    pub(super) object: Option<(usize, String)>,
+    pub(super) object: Option<(usize, Arc<str>)>,
 }
 
 impl Section {
     /// The one after `self` that begins with a line of this name.
     pub(super) fn next(&self, is_object: bool, name: String) -> Self {
         let object = match is_object {
-            true => Some((self.object.as_ref().map_or(0, |(number, _)| number + 1), name.clone())),
+            true => Some((self.object.as_ref().map_or(0, |(number, _)| number + 1), Arc::from(name.as_str()))),
             false => self.object.clone(),
         };
         Self { name, object }
@@ -53,7 +54,7 @@ pub(in crate::io) fn read_apart(bytes: &[u8], path: Option<&Path>) -> Result<Unp
     let mut sources: Vec<Source> = Vec::new();
     for (section, &object) in sections.iter().zip(&object_of) {
         if object == sources.len() {
-            let name = section.object.as_ref().map_or(&section.name, |(_, name)| name).clone();
+            let name = section.object.as_ref().map_or(section.name.as_str(), |(_, name)| name).to_owned();
             sources.push(Source { name, origin: Some(Origin::Group), loses: Vec::new() });
         }
     }

@@ -4,11 +4,11 @@ use std::io::Write;
 
 use rustc_hash::FxHashMap;
 
-use super::super::{Paint, Part};
 use super::super::colour::vertex_means;
 use super::super::error::WriteError;
 use super::super::text::TextOut;
 use super::super::texture::{TextureMap, library_name};
+use super::super::{Paint, Part};
 use crate::mesh::TriMesh;
 
 /// Writes positions, with a colour after each if there are colours, texture coordinates and triangles, and the names of `parts` before theirs.

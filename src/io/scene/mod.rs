@@ -1,7 +1,6 @@
 //! Files of several objects: each object in its own coordinates, and the places that it has, for programs that work on objects one by one.
 //! [`read`](crate::io::read) makes one mesh of all instead.
 
-mod slice;
 mod suit;
 mod types;
 mod write;
@@ -12,8 +11,8 @@ use super::error::{FileError, FileProblem};
 use super::format::Format;
 use super::{gltf, obj, reading, three_mf};
 
-pub(super) use types::{MaterialOrigin, Origin, Source, Unplaced};
 pub use types::{Aside, Placement, Scene, SceneMaterial, SceneObject, ScenePart};
+pub(super) use types::{MaterialOrigin, Origin, Source, Unplaced};
 pub use write::{Flattened, encode_scene, flattened};
 
 /// Reads the objects of a file in 3MF, glTF or OBJ, each once, and where they are placed. `format` and `path` are as for

@@ -12,7 +12,7 @@ use super::types::{Origin, Placement, Scene, SceneObject};
 use crate::mesh::TriMesh;
 
 impl Scene {
-    /// The scene as a file of `format` holds it: the triangles of a material follow one another in glTF; what is placed as a mirror image
+    /// The scene as a file of `format` holds it: vertices that are repeated in glTF are one in the others; the triangles of a material follow one another in glTF; what is placed as a mirror image
     /// becomes an object of its own in 3MF, unless the scene is of 3MF itself; and in OBJ, which places nothing, every place is an object of its own.
     /// With sentences on what became of instances.
     ///
@@ -24,6 +24,9 @@ impl Scene {
         if !is_kept {
             let objects = self.objects.iter_mut().map(|object| &mut object.name);
             objects.chain(self.placements.iter_mut().map(|place| &mut place.name)).for_each(clean);
+        }
+        if self.format.repeats_vertices() && !format.repeats_vertices() {
+            self.objects.iter_mut().for_each(SceneObject::weld);
         }
         match format {
             Format::ThreeMf if !is_kept => notes.extend(self.part_mirrored()),
@@ -84,7 +87,8 @@ impl Scene {
             objects.push(placed);
         }
         (self.objects, self.placements) = (objects, placements);
-        Ok((places > given).then(|| format!("obj has no instances: {} written one by one", counted(places, "instance"))))
+        Ok((places > given)
+            .then(|| format!("obj has no instances: {} written one by one", counted(places, "instance"))))
     }
 
     /// Forgets the objects that are placed nowhere.
@@ -101,7 +105,8 @@ impl Scene {
 
 /// Makes a name one that every format holds.
 fn clean(name: &mut String) {
-    let plain: String = name.chars().map(|c| if c.is_control() || c == '\u{fffe}' || c == '\u{ffff}' { ' ' } else { c }).collect();
+    let plain: String =
+        name.chars().map(|c| if c.is_control() || c == '\u{fffe}' || c == '\u{ffff}' { ' ' } else { c }).collect();
     let mut end = plain.len().min(LONGEST_NAME);
     while !plain.is_char_boundary(end) {
         end -= 1;
@@ -127,7 +132,16 @@ impl SceneObject {
             TextureMap { coordinates, ..texture }
         });
         let (name, is_replaced, loses) = (self.name.clone(), self.is_replaced, self.loses.clone());
-        Self { name, mesh, colours, texture, loses, is_replaced, origin: Origin::Group }
+        Self { name, mesh, colours, texture, number: self.number, loses, is_replaced, origin: Origin::Group }
+    }
+
+    /// Merges vertices at equal positions, which mean the same place where the format repeats them.
+    fn weld(&mut self) {
+        if let Some(colours @ Colours::Vertices(_)) = &self.colours {
+            let corners = (0..self.mesh.triangles.len()).map(|t| colours.corners(&self.mesh, t));
+            self.colours = Some(Colours::Corners(corners.collect()));
+        }
+        self.mesh = self.mesh.welded();
     }
 
     /// Brings the triangles of each material together.

@@ -10,9 +10,9 @@ use super::super::colour::Colours;
 use super::super::format::Format;
 use super::super::loaded::Loaded;
 use super::super::paint::Paint;
+use super::super::slice::Slicer;
 use super::super::texture::{Material, TextureImage, TextureMap};
 use super::super::unit::Unit;
-use super::slice::Slicer;
 use crate::mesh::TriMesh;
 
 /// An object of a scene: a mesh in its own coordinates, and what it looks like. Where it has both, the colour of a material is multiplied by
@@ -27,6 +27,8 @@ pub struct SceneObject {
     pub colours: Option<Colours>,
     /// The textures and materials of `mesh`. The names of the materials are numbers of [`Scene::materials`].
     pub texture: Option<TextureMap>,
+    /// Its number in the scene that was read: [`Scene::suited_to`] may make several objects of one.
+    pub number: usize,
     /// What it has in its file that another mesh in its place cannot keep, in a few words each.
     pub loses: Vec<&'static str>,
     /// Whether [`Scene::replace`] has given it another mesh than its file has.
@@ -202,7 +204,8 @@ impl Scene {
             numbers[number] = Some(Some(scene.objects.len()));
             let (mesh, colours, texture) = slicer.slice(part.triangles.clone());
             let (name, loses) = (source.name.clone(), source.loses.clone());
-            scene.objects.push(SceneObject { name, mesh, colours, texture, loses, is_replaced: false, origin });
+            let number = scene.objects.len();
+            scene.objects.push(SceneObject { name, mesh, colours, texture, number, loses, is_replaced: false, origin });
         }
         for (name, source) in &parts {
             let object = numbers.get(*source).copied().flatten().flatten();
@@ -219,13 +222,7 @@ impl Scene {
     }
 
     /// Gives an object another mesh. The materials of `texture` must go by the names that they have in the object.
-    pub fn replace(
-        &mut self,
-        object: usize,
-        mesh: TriMesh,
-        colours: Option<Colours>,
-        texture: Option<TextureMap>,
-    ) {
+    pub fn replace(&mut self, object: usize, mesh: TriMesh, colours: Option<Colours>, texture: Option<TextureMap>) {
         if let Some(object) = self.objects.get_mut(object) {
             (object.mesh, object.colours, object.texture, object.is_replaced) = (mesh, colours, texture, true);
         }

@@ -216,7 +216,8 @@ impl<'a> Builder<'a> {
         let numbers = piece.triangles.unwrap_or_else(|| (0..object.triangles.len()).collect());
         if let Some(apart) = &mut self.apart {
             let model = &self.models.loaded[open.model].name;
-            let Some(number) = apart.place((model, open.object, piece.number), object, piece.name, open.transform) else {
+            let Some(number) = apart.place((model, open.object, piece.number), object, piece.name, open.transform)
+            else {
                 return Ok(());
             };
             add_mesh(soup, object, &number.to_string(), &numbers, &DAffine3::IDENTITY)?;

@@ -141,7 +141,9 @@ fn write_resources(scene: &Scene, album: &Album, text: &mut TextOut<'_>) {
             let [red, green, blue, alpha] = own.material.colour.unwrap_or(WHITE);
             let name = if own.material.name.is_empty() { "material" } else { &own.material.name };
             let name = escape(name);
-            text.text(&format!("<base name=\"{name}\" displaycolor=\"#{red:02X}{green:02X}{blue:02X}{alpha:02X}\"/>\n"));
+            text.text(&format!(
+                "<base name=\"{name}\" displaycolor=\"#{red:02X}{green:02X}{blue:02X}{alpha:02X}\"/>\n"
+            ));
         }
         text.text("</basematerials>\n");
     }

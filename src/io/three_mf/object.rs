@@ -50,9 +50,9 @@ impl<'a> Written<'a> {
         };
         let looks: Vec<Look> = (0..object.mesh.triangles.len()).map(look).collect();
         let palette_id = take();
-        let palette = looks.contains(&Look::Colours).then(|| {
-            Palette::new(palette_id, &object.mesh, object.colours.as_ref(), |t| looks[t] == Look::Colours)
-        });
+        let palette = looks
+            .contains(&Look::Colours)
+            .then(|| Palette::new(palette_id, &object.mesh, object.colours.as_ref(), |t| looks[t] == Look::Colours));
         let mut places: BTreeMap<u32, Places> = BTreeMap::new();
         for (t, look) in looks.iter().enumerate() {
             let (Look::Picture(image), Some(corners)) = (*look, at(t)) else { continue };
@@ -103,12 +103,7 @@ impl<'a> Written<'a> {
     }
 
     /// Writes the triangles, whose vertices are counted from `first`; `prefix`: what stands before the names of elements.
-    pub(super) fn write_triangles(
-        &self,
-        first: usize,
-        prefix: &str,
-        text: &mut TextOut<'_>,
-    ) -> std::io::Result<()> {
+    pub(super) fn write_triangles(&self, first: usize, prefix: &str, text: &mut TextOut<'_>) -> std::io::Result<()> {
         for (triangle, t) in self.object.mesh.triangles.iter().enumerate() {
             text.text("<");
             text.text(prefix);

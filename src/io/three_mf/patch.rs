@@ -138,7 +138,8 @@ impl ModelPatch<'_> {
                         survey.root = range.clone();
                         survey.m = attribute_of(element, b"xmlns:m").map(|address| *address == *MATERIALS);
                     }
-                    let id = attribute(element, b"id").and_then(|id| std::str::from_utf8(&id).ok()?.trim().parse().ok());
+                    let id =
+                        attribute(element, b"id").and_then(|id| std::str::from_utf8(&id).ok()?.trim().parse().ok());
                     survey.largest = survey.largest.max(id.unwrap_or(0));
                     if let (b"object", Some(id)) = (name, id.filter(|id| self.edits.contains_key(id)))
                         && !is_empty
@@ -271,22 +272,21 @@ impl ModelPatch<'_> {
     }
 
     /// The triangles that stay as they are, and their vertices.
-    fn raw<'b>(
-        &self,
-        place: &Place,
-        pieces: impl Iterator<Item = (usize, &'b Vec<usize>)>,
-    ) -> io::Result<Raw> {
+    fn raw<'b>(&self, place: &Place, pieces: impl Iterator<Item = (usize, &'b Vec<usize>)>) -> io::Result<Raw> {
         let mut corners = BTreeMap::new();
         for &t in pieces.flat_map(|(_, numbers)| numbers) {
             let piece = self.text.get(place.triangles[t].clone()).unwrap_or_default();
             let mut own = None;
             let _ = scan(piece, |found, _| {
                 if let Found::Start(element, _) = found {
-                    let corner = |name: &[u8]| std::str::from_utf8(&attribute(element, name)?).ok()?.trim().parse().ok();
+                    let corner =
+                        |name: &[u8]| std::str::from_utf8(&attribute(element, name)?).ok()?.trim().parse().ok();
                     own = Some([corner(b"v1"), corner(b"v2"), corner(b"v3")]);
                 }
             });
-            let Some([Some(a), Some(b), Some(c)]) = own else { return Err(io::Error::other("the package has changed")) };
+            let Some([Some(a), Some(b), Some(c)]) = own else {
+                return Err(io::Error::other("the package has changed"));
+            };
             corners.insert(t, [a, b, c]);
         }
         let vertices: BTreeSet<usize> = corners.values().flatten().copied().collect();
@@ -341,10 +341,7 @@ fn write_element(old: &[u8], range: Range<usize>, changes: &[(&str, String)], te
     });
 }
 
-fn attribute_of<'a>(
-    element: &'a quick_xml::events::BytesStart<'_>,
-    name: &[u8],
-) -> Option<std::borrow::Cow<'a, [u8]>> {
+fn attribute_of<'a>(element: &'a quick_xml::events::BytesStart<'_>, name: &[u8]) -> Option<std::borrow::Cow<'a, [u8]>> {
     let mut attributes = element.attributes();
     attributes.with_checks(false).flatten().find(|attribute| attribute.key.as_ref() == name).map(|found| found.value)
 }
@@ -374,7 +371,9 @@ fn with_ranges(
             b"object" => {
                 object = attribute(element, b"id").and_then(|id| std::str::from_utf8(&id).ok()?.trim().parse().ok());
             }
-            b"volume" | b"part" if attribute(element, b"firstid").is_some() && attribute(element, b"lastid").is_some() => {
+            b"volume" | b"part"
+                if attribute(element, b"firstid").is_some() && attribute(element, b"lastid").is_some() =>
+            {
                 let Some(own) = object.and_then(|id: u32| Some((id, ranges.get(&id)?))) else { return };
                 let number = met.entry(own.0).or_insert(0);
                 if let Some((first, last)) = own.1.get(*number).copied().flatten() {

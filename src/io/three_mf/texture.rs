@@ -55,7 +55,8 @@ impl Textures {
     ) {
         let first = soup.triangles.len() - numbers.len();
         for (triangle, &number) in (first..).zip(numbers) {
-            let Some(((model, image), [a, b, c])) = property(number).and_then(|property| models.places(property)) else {
+            let Some(((model, image), [a, b, c])) = property(number).and_then(|property| models.places(property))
+            else {
                 continue;
             };
             let material = self.number(Kind::Picture(model, image));
@@ -108,7 +109,9 @@ impl Textures {
         let mut names = BTreeMap::new();
         for (kind, number) in in_order {
             let (material, origin) = match kind {
-                Kind::Picture(model, image) => (picture(models, &mut gallery, model, image), MaterialOrigin::Picture(image)),
+                Kind::Picture(model, image) => {
+                    (picture(models, &mut gallery, model, image), MaterialOrigin::Picture(image))
+                }
                 Kind::Entry { model, group, entry, own } => {
                     let model = &models.loaded[model];
                     let colour = model.groups.get(&group).and_then(|group| group.get(entry as usize)).copied();

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::super::colour::Colours;
-use super::super::loaded::Loaded;
-use super::super::texture::TextureMap;
+use super::colour::Colours;
+use super::loaded::{Loaded, Part};
+use super::texture::TextureMap;
 use crate::mesh::TriMesh;
 
 /// No number yet.
@@ -50,6 +50,24 @@ impl<'a> Slicer<'a> {
         let texture = self.loaded.texture.as_ref().map(|texture| pruned(texture, &numbers));
         let is_there = |texture: &TextureMap| texture.has_coordinates() || !texture.materials.is_empty();
         (mesh, colours.filter(|colours| !colours.is_white()), texture.filter(is_there))
+    }
+}
+
+impl Loaded {
+    /// Leaves out the parts whose numbers `keep` does not want, with the vertices that no other has. What is to be taken away stays.
+    pub fn keep_parts(&mut self, keep: impl Fn(usize) -> bool) {
+        let mut parts = Vec::new();
+        let mut triangles: Vec<usize> = Vec::new();
+        for (_, part) in self.parts.iter().enumerate().filter(|(n, _)| keep(*n)) {
+            let first = triangles.len();
+            triangles.extend(part.triangles.clone());
+            parts.push(Part { name: part.name.clone(), triangles: first..triangles.len() });
+        }
+        if triangles.is_empty() || triangles.len() == self.mesh.triangles.len() {
+            return;
+        }
+        (self.mesh, self.colours, self.texture) = Slicer::new(self).pick(&triangles);
+        self.parts = parts;
     }
 }
 
