@@ -5,6 +5,10 @@ mod common;
 
 mod compare;
 mod documents;
+mod each;
+mod each_gltf;
+mod each_obj;
+mod each_three_mf;
 mod exact;
 mod faults;
 mod fields;

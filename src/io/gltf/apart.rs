@@ -40,7 +40,7 @@ pub(super) fn read(mut opened: Opened<'_>, path: Option<&Path>) -> Result<Unplac
     for &mesh in &order {
         reader.mesh(mesh, &mesh.to_string(), &DMat4::IDENTITY)?;
     }
-    let mut soup = reader.finish();
+    let mut soup = reader.finish_apart();
     let mut lost_elsewhere = std::mem::take(&mut soup.warnings);
     lost_elsewhere.extend(opened.looks.take());
     if soup.triangles.is_empty() {
@@ -140,7 +140,6 @@ fn unused(document: &Document, met: &[bool]) -> Vec<Aside> {
             |primitive: &checked::Primitive<'_>| !is_surface(primitive.mode(), primitive.has(Semantic::Positions));
         let others = checked::primitives(document, &mesh).filter(is_other).count();
         if others > 0 {
-            let name = if name.is_empty() { String::new() } else { format!("in {name}") };
             aside.push(Aside { what: "line or point set".into(), name });
         }
     }

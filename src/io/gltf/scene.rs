@@ -235,7 +235,8 @@ impl<'a, 'b> Reader<'a, 'b> {
     ) -> Result<(), FileError> {
         let mut tint = primitive.material()?.map_or_else(Tint::plain, |material| Tint::of(self.document, &material));
         if self.looks.keeps_colours {
-            tint = Tint::plain();
+            // Colours of vertices are there only where materials go by their numbers.
+            tint = Tint::raw();
         }
         if self.looks.is_textured {
             self.looks.hang(primitive, (start, first), &mut self.soup, self.allowance);
@@ -283,6 +284,13 @@ impl<'a, 'b> Reader<'a, 'b> {
             self.soup.positions.push(if in_place { point } else { place.transform_point3(point) });
         }
         Ok((first as u32, points.len()))
+    }
+
+    /// What was read where all else is told by name.
+    pub(super) fn finish_apart(mut self) -> Soup {
+        (self.other_primitives, self.points, self.posed) = (0, 0, 0);
+        self.used.fill(true);
+        self.finish()
     }
 
     /// What was read, with sentences on what was not.

@@ -57,7 +57,7 @@ impl Scene {
             place.object = copy;
             place.transform *= DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
         }
-        self.drop_unplaced();
+        self.order_by_place();
         (count > 0).then(|| {
             let places = counted(count, "mirrored instance");
             format!("{places} written as objects of their own: not all programs take a transform of 3MF that mirrors")
@@ -91,15 +91,17 @@ impl Scene {
             .then(|| format!("obj has no instances: {} written one by one", counted(places, "instance"))))
     }
 
-    /// Forgets the objects that are placed nowhere.
-    fn drop_unplaced(&mut self) {
-        let mut is_placed = vec![false; self.objects.len()];
-        self.placements.iter().for_each(|place| is_placed[place.object] = true);
-        let mut kept = 0;
-        let numbers: Vec<usize> = is_placed.iter().map(|&placed| (kept, kept += usize::from(placed)).0).collect();
-        let mut placed = is_placed.into_iter();
-        self.objects.retain(|_| placed.next() == Some(true));
-        self.placements.iter_mut().for_each(|place| place.object = numbers[place.object]);
+    /// Brings the objects into the order in which they are placed first, and forgets those that are placed nowhere.
+    fn order_by_place(&mut self) {
+        let mut objects: Vec<Option<SceneObject>> = std::mem::take(&mut self.objects).into_iter().map(Some).collect();
+        let mut numbers = vec![0; objects.len()];
+        for place in &mut self.placements {
+            if let Some(object) = objects[place.object].take() {
+                numbers[place.object] = self.objects.len();
+                self.objects.push(object);
+            }
+            place.object = numbers[place.object];
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
-use super::super::colour::Colours;
+use super::super::colour::{Colours, WHITE};
 use super::super::format::Format;
 use super::super::loaded::Loaded;
 use super::super::paint::Paint;
@@ -223,9 +223,23 @@ impl Scene {
 
     /// Gives an object another mesh. The materials of `texture` must go by the names that they have in the object.
     pub fn replace(&mut self, object: usize, mesh: TriMesh, colours: Option<Colours>, texture: Option<TextureMap>) {
-        if let Some(object) = self.objects.get_mut(object) {
-            (object.mesh, object.colours, object.texture, object.is_replaced) = (mesh, colours, texture, true);
+        let Some(place) = self.objects.get_mut(object) else { return };
+        (place.mesh, place.colours, place.texture, place.is_replaced) = (mesh, colours, texture, true);
+        if self.format == Format::ThreeMf {
+            let colours = self.blends_of(&self.objects[object]);
+            self.objects[object].colours = colours;
         }
+    }
+
+    /// The colours of an object of 3MF where they blend; elsewhere its materials have them.
+    fn blends_of(&self, object: &SceneObject) -> Option<Colours> {
+        let colours = object.colours.as_ref()?;
+        let corners = |t: usize| match self.material_of(object, t).map(|(_, material)| material.origin) {
+            Some(MaterialOrigin::Blend) => colours.corners(&object.mesh, t),
+            _ => [WHITE; 3],
+        };
+        let corners = (0..object.mesh.triangles.len()).map(corners).collect();
+        Some(Colours::of_corners(corners, &object.mesh)).filter(|colours| !colours.is_white())
     }
 
     /// How often an object is placed.

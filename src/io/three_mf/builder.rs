@@ -245,7 +245,8 @@ impl<'a> Builder<'a> {
         let mut apart = self.apart.take().unwrap_or_default();
         let mut soup = std::mem::replace(&mut self.soup, Soup::new());
         apart.materials = self.textures.finish(&mut self.models, &mut soup);
-        self.textures = Textures::default();
+        // What stays as it is in a file of the same kind is told by name.
+        (self.textures, self.helpers) = (Textures::default(), BTreeMap::new());
         let images = std::mem::take(&mut soup.warnings);
         let (mut rest, _) = self.finish();
         apart.lost_elsewhere.append(&mut rest.warnings);
