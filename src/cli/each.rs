@@ -34,13 +34,13 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
     let picked = picked(job, &scene, &label)?;
     session.expect_frames(picked.len());
     let is_kept = scene.is_kept_by(target.options.format);
-    let (mut entries, mut lost) = (Vec::new(), BTreeSet::new());
+    let (mut entries, mut lost, mut is_whole) = (Vec::new(), BTreeSet::new(), true);
     for number in 0..scene.objects.len() {
         let mut entry = entry_of(&scene, number);
         if picked.contains(&number) {
             session.progress.check()?;
             let loses = scene.objects[number].loses.clone();
-            work_on(&mut scene, number, &mut entry, (job, &target, unit), session, report)?;
+            is_whole &= work_on(&mut scene, number, &mut entry, (job, &target, unit), session, report)?;
             if entry.done == ObjectDone::Repaired {
                 lost.extend(loses);
             }
@@ -63,10 +63,10 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
         let rows: Vec<_> = summary::stages(report).collect();
         session.say(super::table::table(&rows).trim_end());
     }
-    Ok(if each_words::any_left(report) { Exit::Limit } else { exit })
+    Ok(if is_whole { exit } else { Exit::Limit })
 }
 
-/// Repairs an object, and notes what was done.
+/// Repairs an object, and notes what was done. Returns whether the result is what the object describes.
 fn work_on(
     scene: &mut Scene,
     number: usize,
@@ -74,7 +74,7 @@ fn work_on(
     (job, target, unit): (&Job<'_>, &Target, Option<Unit>),
     session: &Session,
     report: &mut RunReport,
-) -> Result<(), Failure> {
+) -> Result<bool, Failure> {
     let mut input = object_input(scene, number, report);
     let (options, scale) = solid::options(job.args, unit, slice::from_ref(&input), Some(target))?;
     if report.options.is_null() {
@@ -103,7 +103,7 @@ fn work_on(
     if let Some(Mesh { mesh, colours, texture }) = mesh {
         scene.replace(number, mesh, colours, texture);
     }
-    Ok(())
+    Ok(repaired.is_whole)
 }
 
 /// Where the result goes: a format that holds objects.

@@ -8,7 +8,7 @@ use super::session::Session;
 use super::streams::is_stream;
 use super::target::Target;
 use crate::fit::rounded;
-use crate::io::{self, Format, Placement, Scene, SceneObject};
+use crate::io::{self, Format, Placement, Rgba, Scene, SceneObject};
 use crate::mesh::{ValidateOptions, Validity, validate};
 
 /// Transforms of glTF are in single precision: so near they must come back, times the largest of their numbers.
@@ -143,11 +143,16 @@ fn looks_alike(
                 let colour =
                     |material: &Option<io::Material>| material.as_ref().and_then(|m| m.colour).unwrap_or(white);
                 let same_places = format == Format::ThreeMf || at(own, t) == at(meant, t);
-                corners(own, t) == corners(meant, t)
-                    && colour(&a) == colour(&b)
+                let shown = |own: [Rgba; 3], material: Rgba| own.map(|own| times(own, material));
+                shown(corners(own, t), colour(&a)) == shown(corners(meant, t), colour(&b))
                     && same_places
                     && (format == Format::ThreeMf || image(read, &a) == image(scene, &b))
             }
         }
     })
+}
+
+/// A colour under another: the same wherever one of the two is white.
+fn times(a: Rgba, b: Rgba) -> Rgba {
+    std::array::from_fn(|k| (u16::from(a[k]) * u16::from(b[k]) / 255) as u8)
 }

@@ -44,6 +44,8 @@ pub struct Repaired {
     pub stages: Vec<StageTime>,
     /// Sentences a user should read.
     pub warnings: Vec<String>,
+    /// Whether the result is what the object describes, and no guess.
+    pub is_whole: bool,
 }
 
 /// Repairs an object. What encloses nothing, or would be mostly lost, is left as it is. `is_kept`: whether the file keeps the mesh of an object
@@ -81,10 +83,11 @@ pub fn repaired(
     let pipeline = Some(Box::new(outcome.report));
     if !lost.is_empty() && !args.keeps_partial() {
         let why = format!("{}; --keep-partial writes this result all the same", lost.join("; "));
-        return Ok(Repaired { done: Done::Left(why), pipeline, stages, warnings });
+        return Ok(Repaired { done: Done::Left(why), pipeline, stages, warnings, is_whole: false });
     }
-    warnings.extend(lost);
-    warnings.extend(limits::guessed(&report));
+    let guessed = limits::guessed(&report);
+    let is_whole = lost.is_empty() && guessed.is_none();
+    warnings.extend(lost.into_iter().chain(guessed));
     let is_same = is_same(&outcome.solid, &input.loaded.mesh);
     let keeps_all = was_solid && pipeline.as_ref().is_some_and(|pipeline| pipeline.kept_all());
     let keeps_all = keeps_all && outcome.solid.triangles.len() == input.loaded.mesh.triangles.len();
@@ -95,7 +98,7 @@ pub fn repaired(
         (true, _) | (_, true) => Done::Kept(Some(mesh)),
         _ => Done::Repaired(mesh),
     };
-    Ok(Repaired { done, pipeline, stages, warnings })
+    Ok(Repaired { done, pipeline, stages, warnings, is_whole })
 }
 
 /// An object that cannot be repaired; what ends the whole run stays an error.
@@ -104,7 +107,7 @@ fn left(failure: Failure) -> Result<Repaired, Failure> {
         Exit::Input | Exit::Limit | Exit::Usage => {
             let hint = failure.hint.map_or(String::new(), |hint| format!(" ({hint})"));
             let done = Done::Left(failure.message + &hint);
-            Ok(Repaired { done, pipeline: None, stages: Vec::new(), warnings: Vec::new() })
+            Ok(Repaired { done, pipeline: None, stages: Vec::new(), warnings: Vec::new(), is_whole: false })
         }
         _ => Err(failure),
     }

@@ -50,11 +50,6 @@ pub fn rows(report: &RunReport, format: Format, target: &Target, unit: Option<Un
     rows
 }
 
-/// Whether an object could not be repaired.
-pub fn any_left(report: &RunReport) -> bool {
-    matches!(&report.result, Some(RunResult::Objects { objects, .. }) if objects.iter().any(|o| o.done == ObjectDone::Left))
-}
-
 /// A sentence on what a file of another kind does not get.
 pub fn left_out(aside: &[Aside], format: Format) -> Option<String> {
     (!aside.is_empty()).then(|| format!("{format} has no place for it, left out: {}", listed(aside)))

@@ -14,6 +14,7 @@
 //! |---|---|---|
 //! | a mesh in a file | [`read`], [`read_as`] | [`write()`], [`write_with`], [`write_painted`] |
 //! | a mesh in memory | [`read_bytes`] | [`encode`], [`encode_coloured`], [`encode_painted`] |
+//! | the objects of a file in memory | [`read_scene`] | [`encode_scene`] |
 //! | a lattice in a file | [`read_grid`] | [`write_grid`], [`write_grid_as`] |
 //! | a lattice in memory | [`read_grid_bytes`], [`read_grid_within`] | [`encode_grid`] |
 //!

@@ -12,6 +12,9 @@ use crate::mesh::Bounds;
 const FLOAT: u32 = gltf::json::accessor::FLOAT;
 const UNSIGNED_SHORT: u32 = gltf::json::accessor::UNSIGNED_SHORT;
 
+/// As many sets of coordinates stand before one that a material asks for.
+const MOST_SETS: u32 = 8;
+
 /// Sets a member of a value that is an object; a file may have something else in its place.
 pub(super) fn set(value: &mut Value, name: &str, member: Value) {
     if let Some(members) = value.as_object_mut() {
@@ -103,7 +106,10 @@ impl Patch {
                 primitive["attributes"]["COLOR_0"] = json!(colours);
             }
             if let Some(coordinates) = coordinates.filter(|_| piece.textured) {
-                primitive["attributes"][format!("TEXCOORD_{set}")] = json!(coordinates);
+                // Sets are numbered from 0 without gaps.
+                for set in (0..set.min(MOST_SETS)).chain([set]) {
+                    primitive["attributes"][format!("TEXCOORD_{set}")] = json!(coordinates);
+                }
             }
             if let Some(material) = material {
                 primitive["material"] = json!(material);
