@@ -34,8 +34,7 @@ def check(condition, what):
 
 def scene_of(path):
     """The scene as trimesh has it, and for each node with a mesh: its name, mesh and transform."""
-    kwargs = {"split_object": True, "group_material": False} if str(path).lower().endswith(".obj") else {}
-    scene = trimesh.load(path, force="scene", process=False, **kwargs)
+    scene = trimesh.load(path, force="scene", process=False)
     nodes = []
     for name in scene.graph.nodes_geometry:
         transform, geometry = scene.graph[name]
@@ -47,6 +46,32 @@ def document(path):
     """The JSON of a glTF file; trimesh gives nodes without a name one by chance."""
     data = Path(path).read_bytes()
     return json.loads(data[20 : 20 + struct.unpack("<I", data[12:16])[0]] if data[:4] == b"glTF" else data)
+
+
+def alike(a, b):
+    """Whether two values of JSON are the same, numbers to the last digit but one."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(alike(a[key], b[key]) for key in a)
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(alike, a, b))
+    if isinstance(a, float) or isinstance(b, float):
+        return abs(a - b) <= 1e-15 * abs(a)
+    return a == b
+
+
+def blocks_of(path):
+    """The meshes under the `o` lines of an OBJ file; trimesh parts and joins them by material."""
+    places, blocks = [], {}
+    name = ""
+    for line in Path(path).read_text().splitlines():
+        kind, _, rest = line.partition(" ")
+        if kind == "v":
+            places.append([float(word) for word in rest.split()[:3]])
+        elif kind == "o":
+            name = f"{len(blocks) + 1} {rest}"
+        elif kind == "f":
+            blocks.setdefault(name, []).append([int(word.split("/")[0]) - 1 for word in rest.split()])
+    return {name: trimesh.Trimesh(places, faces, process=False) for name, faces in blocks.items()}
 
 
 def look(mesh):
@@ -68,8 +93,9 @@ def by_trimesh(before, after):
     print(f"trimesh: {len(a.geometry)} meshes at {len(old)} nodes before, {len(b.geometry)} at {len(new)} after")
     if same:
         if Path(before).suffix.lower() in (".glb", ".gltf"):
-            check(document(before).get("nodes") == document(after).get("nodes"), "nodes, with their names and transforms")
-            check(document(before).get("materials") == document(after).get("materials"), "materials")
+            old_json, new_json = document(before), document(after)
+            for kind in ("nodes", "materials", "scenes", "cameras", "skins"):
+                check(alike(old_json.get(kind), new_json.get(kind)), f"{kind} as the document has them")
         else:
             check(sorted(n[0] for n in old) == sorted(n[0] for n in new), "the names of nodes")
         check(len(old) == len(new), "the number of instances")
@@ -81,7 +107,8 @@ def by_trimesh(before, after):
     size = np.abs(b.bounds).max()
     check(np.allclose(a.bounds * scale, b.bounds, atol=1e-4 * size), f"the box around all: {b.bounds.round(4).tolist()}")
     # A mesh of several materials is several meshes to trimesh; whole objects are looked at.
-    for name, mesh in whole_objects(b).items():
+    objects = blocks_of(after) if Path(after).suffix.lower() == ".obj" else whole_objects(b)
+    for name, mesh in objects.items():
         mesh.merge_vertices(merge_tex=True, merge_norm=True)
         mesh.remove_unreferenced_vertices()
         kinds = (mesh.is_watertight, mesh.is_winding_consistent, mesh.volume > 0)
@@ -104,6 +131,27 @@ def whole_objects(scene):
     return objects
 
 
+def colour_of(model, mesh):
+    """The colour, or the base material, that most triangles have."""
+    found = {}
+    for t in range(mesh.GetTriangleCount()):
+        properties = mesh.GetTriangleProperties(t)
+        key = (properties.ResourceID, properties.PropertyIDs[0])
+        found[key] = found.get(key, 0) + 1
+    resource, entry = max(found, key=found.get, default=(0, 0))
+    if not resource:
+        return None
+    kind = model.GetPropertyTypeByID(resource)
+    if kind == lib3mf.PropertyType.Colors:
+        colour = model.GetColorGroupByID(resource).GetColor(entry)
+    elif kind == lib3mf.PropertyType.BaseMaterial:
+        group = model.GetBaseMaterialGroupByID(resource)
+        return group.GetName(entry)
+    else:
+        return str(kind)
+    return (colour.Red, colour.Green, colour.Blue, colour.Alpha)
+
+
 def items_of(path):
     """The objects and the build of a 3MF file as lib3mf has them."""
     wrapper = lib3mf.get_wrapper()
@@ -123,7 +171,7 @@ def items_of(path):
         if found.IsMeshObject():
             mesh = model.GetMeshObjectByID(found.GetResourceID())
             about["closed"] = mesh.IsManifoldAndOriented()
-            about["property"] = mesh.GetObjectLevelProperty()[1:]
+            about["colour"] = colour_of(model, mesh)
         else:
             parts = model.GetComponentsObjectByID(found.GetResourceID())
             components = [parts.GetComponent(n) for n in range(parts.GetComponentCount())]
@@ -148,6 +196,8 @@ def by_lib3mf(before, after):
         without = lambda all: {n: {k: v for k, v in o.items() if k != "closed"} for n, o in all.items()}
         names = lambda all: [(o["name"], o["type"]) for o in all.values()]
         check(names(old[0]) == names(objects), "names and types of objects")
+        colours = lambda all: [o["colour"] for o in all.values() if "colour" in o]
+        check(colours(old[0]) == colours(objects), f"colours and materials: {colours(objects)}")
         # lib3mf counts resources anew; what is before an object may be one group more.
         shape = lambda all: [[t for _, t in o.get("components", [])] for o in without(all).values()]
         check(shape(old[0]) == shape(objects), "components and their transforms")

@@ -23,8 +23,11 @@ const MATERIALS: &[u8] = b"http://schemas.microsoft.com/3dmanufacturing/material
 /// The replaced objects of a model, by number: the pieces with their numbers.
 type Edits<'a> = BTreeMap<u32, Vec<(Option<usize>, &'a SceneObject)>>;
 
+/// The first and the last triangle of each volume of an object; nothing where it has none.
+type OwnRanges = Vec<Option<(usize, usize)>>;
+
 /// New ranges of the volumes of objects, by the number of the object.
-type Ranges = BTreeMap<u32, Vec<Option<(usize, usize)>>>;
+type Ranges = BTreeMap<u32, OwnRanges>;
 
 /// Writes the package of a scene with the objects that were replaced.
 pub(in crate::io) fn write_patched(scene: &Scene, out: &mut dyn Write) -> Result<(), WriteError> {
@@ -93,7 +96,6 @@ struct ModelPatch<'a> {
 struct Place {
     /// Its start tag.
     start: Range<usize>,
-    has_property: bool,
     /// What stands before the names of elements: nothing, or `c:`.
     prefix: String,
     /// What is within the tags of its mesh.
@@ -144,8 +146,7 @@ impl ModelPatch<'_> {
                     if let (b"object", Some(id)) = (name, id.filter(|id| self.edits.contains_key(id)))
                         && !is_empty
                     {
-                        let has_property = attribute(element, b"pid").is_some();
-                        open = Some((id, Place { start: range, has_property, ..Place::default() }));
+                        open = Some((id, Place { start: range, ..Place::default() }));
                     }
                 }
             },
@@ -179,13 +180,8 @@ impl ModelPatch<'_> {
             written.iter().try_for_each(|(_, _, written)| written.write_groups(&mut text))?;
             text.finish()?;
             needs_m |= written.iter().any(|(_, _, written)| written.has_groups());
-            let property = written.iter().find_map(|(_, _, written)| written.first_property());
             if !groups.is_empty() {
                 splices.put(place.start.start..place.start.start, groups);
-            }
-            if let Some((group, entry)) = property.filter(|_| !place.has_property) {
-                let changes = [("pid", group.to_string()), ("pindex", entry.to_string())];
-                splices.put(place.start.clone(), self.changed_tag(&place.start, &changes)?);
             }
             let volumes = self.roles.volumes(id);
             let (content, own) = self.content(place, volumes, &written)?;
@@ -221,7 +217,7 @@ impl ModelPatch<'_> {
         place: &Place,
         volumes: &[Volume],
         written: &[(Option<usize>, &SceneObject, Written<'_>)],
-    ) -> io::Result<(Vec<u8>, Vec<Option<(usize, usize)>>)> {
+    ) -> io::Result<(Vec<u8>, OwnRanges)> {
         let count = place.triangles.len();
         let mut taken = vec![false; count];
         let mut given: Vec<Vec<usize>> = volumes
