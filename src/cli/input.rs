@@ -108,9 +108,6 @@ pub fn mesh_of(
     let loaded = io::read_bytes(bytes, args.in_format, name).map_err(|e| unreadable(&label, stream, args, &e))?;
     progress.check()?;
     notes.extend(loaded.warnings.iter().map(|warning| format!("{label}: {warning}")));
-    let entries = |parts: &[Part]| -> Vec<PartEntry> {
-        parts.iter().map(|part| PartEntry { name: part.name.clone(), triangles: part.triangles.len() }).collect()
-    };
     let entry = InputEntry {
         path: label.clone(),
         name: None,
@@ -118,12 +115,17 @@ pub fn mesh_of(
         bytes: bytes.len() as u64,
         sha256: sha256(bytes),
         unit: loaded.unit.map(|unit| unit.to_string()),
-        parts: entries(&loaded.parts),
-        negative_parts: loaded.negative.as_ref().map_or(Vec::new(), |negative| entries(&negative.parts)),
+        parts: part_entries(&loaded.parts),
+        negative_parts: loaded.negative.as_ref().map_or(Vec::new(), |negative| part_entries(&negative.parts)),
         warnings: loaded.warnings.clone(),
         validity: None,
     };
     Ok(Input { label, loaded, entry })
+}
+
+/// Parts as the report lists them.
+pub fn part_entries(parts: &[Part]) -> Vec<PartEntry> {
+    parts.iter().map(|part| PartEntry { name: part.name.clone(), triangles: part.triangles.len() }).collect()
 }
 
 fn read_stream() -> std::io::Result<Vec<u8>> {

@@ -64,8 +64,8 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
         .timed(Stage::Read, |report| input::read_operands(&job.paths, &args.reading, session, &mut report.warnings))?;
     if let (Some(pick), Some(input)) = (job.pick, inputs.first_mut()) {
         pick.apply(&mut input.loaded, &input.label)?;
-        let picked = pick::fused(&input.loaded, &input.label);
-        report.warnings.extend(picked);
+        input.entry.parts = input::part_entries(&input.loaded.parts);
+        report.warnings.extend(pick::fused(&input.loaded, &input.label));
     }
     for (input, name) in inputs.iter_mut().zip(&job.names) {
         input.entry.name = Some(name.clone());

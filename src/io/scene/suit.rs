@@ -60,7 +60,8 @@ impl Scene {
         self.order_by_place();
         (count > 0).then(|| {
             let places = counted(count, "mirrored instance");
-            format!("{places} written as objects of their own: not all programs take a transform of 3MF that mirrors")
+            let own = if count == 1 { "an object of its own" } else { "objects of their own" };
+            format!("{places} written as {own}: not all programs take a transform of 3MF that mirrors")
         })
     }
 
