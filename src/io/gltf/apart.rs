@@ -92,11 +92,12 @@ fn places(
         if has_skin {
             posed.insert(mesh);
         }
-        for transform in reader.copies(i, transform)? {
+        let name = node.name().unwrap_or_default();
+        reader.each_copy(i, transform, |reader, transform| {
             reader.count_place()?;
-            places.push(Placed { mesh, name: node.name().unwrap_or_default().to_owned(), transform });
-        }
-        Ok(())
+            places.push(Placed { mesh, name: name.to_owned(), transform: *transform });
+            Ok(())
+        })
     })?;
     Ok(places)
 }

@@ -128,19 +128,26 @@ impl<'a, 'b> Reader<'a, 'b> {
             let Some((mesh, is_posed)) = checked::mesh_of(document, node) else { return Ok(()) };
             self.posed += usize::from(is_posed);
             let name = node.name().unwrap_or_default();
-            self.copies(i, place)?.iter().try_for_each(|place| self.mesh(mesh, name, place))
+            self.each_copy(i, place, |reader, place| reader.mesh(mesh, name, place))
         })
     }
 
-    /// The places of the mesh of a node that has this transform itself.
-    pub(super) fn copies(&mut self, node: usize, place: &DMat4) -> Result<Vec<DMat4>, FileError> {
-        let copies = self.instancing.of(node, self.document, self.buffers, self.allowance)?;
-        Ok(copies.map_or_else(|| vec![*place], |copies| copies.places().map(|copy| *place * copy).collect()))
+    /// Hands out the places of the mesh of a node that has this transform itself, one by one: there may be any number.
+    pub(super) fn each_copy(
+        &mut self,
+        node: usize,
+        place: &DMat4,
+        mut visit: impl FnMut(&mut Self, &DMat4) -> Result<(), FileError>,
+    ) -> Result<(), FileError> {
+        match self.instancing.of(node, self.document, self.buffers, self.allowance)? {
+            Some(copies) => copies.places().try_for_each(|copy| visit(self, &(*place * copy))),
+            None => visit(self, place),
+        }
     }
 
-    /// Counts a place of a mesh.
+    /// Counts a place of a mesh, which takes as much memory as a few vertices.
     pub(super) fn count_place(&mut self) -> Result<(), FileError> {
-        Ok(self.allowance.spend(1)?)
+        Ok(self.allowance.spend(4)?)
     }
 
     pub(super) fn mesh(&mut self, i: usize, name: &str, place: &DMat4) -> Result<(), FileError> {
