@@ -20,6 +20,8 @@ LEFT_OUT = {
     # The numbers of a lattice have no choice of format.
     "sdf:out-format",
     "convert:in-format",
+    # Its result is a file of objects, not a mesh.
+    "repair:each",
 }
 
 LENGTH = ("LEN", "LEN|off", "LEN|full", "VOLUME", "LEN|PLANE", "AXIS[=AT]")

@@ -30,7 +30,7 @@ pub fn run(
     let paths: Vec<_> = args.inputs.iter().map(AsRef::as_ref).collect();
     let expression = expression(paths.len());
     solid::run(
-        &Job { paths, names: Vec::new(), change: None, leave: None, expression, args: &args.solid },
+        &Job { paths, names: Vec::new(), change: None, leave: None, pick: None, expression, args: &args.solid },
         session,
         report,
     )

@@ -44,6 +44,7 @@ pub fn run(args: &CsgArgs, session: &Session, report: &mut RunReport) -> Result<
     let job = Job {
         change: None,
         leave: None,
+        pick: None,
         paths: operands.iter().map(|(_, path)| *path).collect(),
         names: names.iter().map(|name| name.to_string()).collect(),
         expression,

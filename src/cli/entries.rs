@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::mesh::Validity;
+use crate::pipeline::Report;
 
 /// One input in the report.
 #[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
@@ -64,6 +65,52 @@ pub struct OutputEntry {
 
 fn is_nothing(bytes: &u64) -> bool {
     *bytes == 0
+}
+
+/// What `repair --each` has done to an object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ObjectDone {
+    /// It has a new mesh.
+    Repaired,
+    /// It was a solid that needed nothing, and has its mesh as it was.
+    Kept,
+    /// It could not be repaired, and has its mesh as it was.
+    Left,
+    /// `--part` did not pick it, and it has its mesh as it was.
+    NotPicked,
+}
+
+/// An object of `repair --each` in the report, in its own coordinates.
+#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
+pub struct ObjectEntry {
+    /// Its name.
+    pub name: String,
+    /// How often it is placed.
+    pub places: usize,
+    /// What was done to it.
+    pub done: ObjectDone,
+    /// Why it was left as it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
+    /// Its state as read; nothing where it was not picked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub before: Option<Validity>,
+    /// Its state, read back from the written file; nothing where it was left or not picked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub after: Option<Validity>,
+    /// What was found and done.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pipeline: Option<Box<Report>>,
+}
+
+/// Something in a file that is no object to work on.
+#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
+pub struct AsideEntry {
+    /// What it is.
+    pub what: String,
+    /// Its name.
+    pub name: String,
 }
 
 /// A lattice in the report, in the unit of the run.

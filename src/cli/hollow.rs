@@ -40,6 +40,7 @@ pub fn run(args: &HollowArgs, session: &Session, report: &mut RunReport) -> Resu
         expression: Expression::Operand(0),
         change: Some(&change),
         leave: None,
+        pick: None,
         args: &args.solid,
     };
     solid::run(&job, session, report)

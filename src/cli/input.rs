@@ -121,9 +121,6 @@ pub fn mesh_of(
 /// A mesh with its entry in the report, as one that lies in memory. What its reader found odd goes to `notes`.
 pub fn described(label: String, loaded: Loaded, notes: &mut Vec<String>) -> Input {
     notes.extend(loaded.warnings.iter().map(|warning| format!("{label}: {warning}")));
-    let entries = |parts: &[Part]| -> Vec<PartEntry> {
-        parts.iter().map(|part| PartEntry { name: part.name.clone(), triangles: part.triangles.len() }).collect()
-    };
     let entry = InputEntry {
         path: label.clone(),
         name: None,
@@ -131,12 +128,17 @@ pub fn described(label: String, loaded: Loaded, notes: &mut Vec<String>) -> Inpu
         bytes: None,
         sha256: None,
         unit: loaded.unit.map(|unit| unit.to_string()),
-        parts: entries(&loaded.parts),
-        negative_parts: loaded.negative.as_ref().map_or(Vec::new(), |negative| entries(&negative.parts)),
+        parts: part_entries(&loaded.parts),
+        negative_parts: loaded.negative.as_ref().map_or(Vec::new(), |negative| part_entries(&negative.parts)),
         warnings: loaded.warnings.clone(),
         validity: None,
     };
     Input { label, loaded, entry }
+}
+
+/// Parts as the report lists them.
+pub fn part_entries(parts: &[Part]) -> Vec<PartEntry> {
+    parts.iter().map(|part| PartEntry { name: part.name.clone(), triangles: part.triangles.len() }).collect()
 }
 
 fn read_stream() -> std::io::Result<Vec<u8>> {
@@ -145,7 +147,8 @@ fn read_stream() -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn unreadable(label: &str, stream: bool, args: &InputArgs, error: &io::FileError) -> Failure {
+/// Why a file cannot be read.
+pub(super) fn unreadable(label: &str, stream: bool, args: &InputArgs, error: &io::FileError) -> Failure {
     let text = error.to_string();
     let message = if text.contains(label) { text } else { format!("{label}: {text}") };
     let failure = Failure::input(message);

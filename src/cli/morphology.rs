@@ -137,6 +137,7 @@ fn changed(
         expression: Expression::Operand(0),
         change: Some(change),
         leave: None,
+        pick: None,
         args,
     };
     solid::run(&job, session, report)

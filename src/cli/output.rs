@@ -30,56 +30,48 @@ pub fn write_verified<'a, T>(
     session: &Session,
     judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
 ) -> Result<(OutputEntry, T), Failure> {
-    session.progress.stage(Stage::Write)?;
     let paint = paint.into();
-    let judge = |read: &Loaded| {
-        let verdict = judge(read)?;
-        super::paint::check_texture(read, &paint)?;
+    let encoded = |beside: Option<&Path>, out: &mut dyn Write| encode(target, mesh, &Paint { beside, ..paint }, out);
+    let written = write_judged(target, encoded, session, |bytes| {
+        let read = read_back(bytes, target)?;
+        let verdict = judge(&read)?;
+        super::paint::check_texture(&read, &paint)?;
         Ok(verdict)
-    };
-    if is_direct(&target.path) {
-        return write_direct(target, mesh, &paint, session, judge);
-    }
-    let written = write_file(target, mesh, &Paint { beside: Some(&target.path), ..paint }, session, judge)?;
+    })?;
     if let Some(texture) = paint.texture {
         super::paint::write_beside(target, texture, session)?;
     }
     Ok(written)
 }
 
-fn write_direct<T>(
+/// Writes what `encode` makes, reads it back, and lets `judge` look at the bytes; see [`write_verified`]. `encode` is told where the files
+/// beside it will lie, if there can be some.
+pub fn write_judged<T>(
     target: &Target,
-    mesh: &TriMesh,
-    paint: &Paint<'_>,
+    encode: impl FnOnce(Option<&Path>, &mut dyn Write) -> Result<(), Failure>,
     session: &Session,
-    judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
+    judge: impl FnOnce(&[u8]) -> Result<T, Failure>,
 ) -> Result<(OutputEntry, T), Failure> {
-    let mut bytes = Vec::new();
-    encode(target, mesh, paint, &mut bytes)?;
-    session.progress.stage(Stage::Verify)?;
-    let verdict = judge(&read_back(&bytes, target)?)?;
-    session.progress.check()?;
-    write_at_once(&target.path, &bytes)?;
-    Ok((entry(target, &bytes), verdict))
-}
-
-fn write_file<T>(
-    target: &Target,
-    mesh: &TriMesh,
-    paint: &Paint<'_>,
-    session: &Session,
-    judge: impl FnOnce(&Loaded) -> Result<T, Failure>,
-) -> Result<(OutputEntry, T), Failure> {
+    session.progress.stage(Stage::Write)?;
+    if is_direct(&target.path) {
+        let mut bytes = Vec::new();
+        encode(None, &mut bytes)?;
+        session.progress.stage(Stage::Verify)?;
+        let verdict = judge(&bytes)?;
+        session.progress.check()?;
+        write_at_once(&target.path, &bytes)?;
+        return Ok((entry(target, &bytes), verdict));
+    }
     let failed = |e: &std::io::Error| unwritable(&target.path, e);
     let Drafted { file, path } = session.draft(&target.path)?;
     let mut buffer = std::io::BufWriter::with_capacity(1 << 20, &file);
-    encode(target, mesh, paint, &mut buffer)?;
+    encode(Some(&target.path), &mut buffer)?;
     buffer.flush().map_err(|e| failed(&e))?;
     drop(buffer);
     session.progress.stage(Stage::Verify)?;
     synced(&file, &target.path, || {
         let bytes = std::fs::read(path).map_err(|e| failed(&e))?;
-        let verdict = judge(&read_back(&bytes, target)?)?;
+        let verdict = judge(&bytes)?;
         Ok((entry(target, &bytes), verdict))
     })
 }

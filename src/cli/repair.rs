@@ -1,10 +1,12 @@
 //! `repair IN -o OUT`, and with `--outer` the surface as a ball sees it.
 
 use super::change::Change;
+use super::each;
 use super::exit::{Exit, Failure};
 use super::holes::LeaveArgs;
 use super::length::Length;
 use super::maker::Maker;
+use super::pick::PickArgs;
 use super::report::RunReport;
 use super::session::Session;
 use super::solid::{self, Job};
@@ -16,7 +18,7 @@ use std::path::PathBuf;
 /// `repair IN -o OUT`.
 #[derive(Debug, Args)]
 pub struct RepairArgs {
-    /// The mesh to repair; all its shells together are one solid
+    /// The mesh to repair; all its shells together are one solid, unless --each keeps the objects of the file apart
     #[arg(value_name = "IN")]
     pub input: PathBuf,
     /// Keep the surface as a ball of this diameter sees it from outside: what is narrower is no way in, and what the ball does not come to goes [default of LEN: 1%]
@@ -25,6 +27,12 @@ pub struct RepairArgs {
     /// How thick sheets become that the ball of --outer sees from both sides
     #[arg(long, value_name = "LEN", allow_hyphen_values = true, requires = "outer")]
     pub thickness: Option<Length>,
+    /// Repair each object of a 3MF, glTF or OBJ file by itself, and keep names, places, colours, materials and all else
+    #[arg(long, conflicts_with_all = ["map", "plan", "holes", "max_hole"])]
+    pub each: bool,
+    /// Which objects.
+    #[command(flatten)]
+    pub pick: PickArgs,
     /// Which holes are left open.
     #[command(flatten)]
     pub leave: LeaveArgs,
@@ -43,7 +51,11 @@ pub fn run(args: &RepairArgs, session: &Session, report: &mut RunReport) -> Resu
         expression: Expression::Operand(0),
         change: outer.as_ref(),
         leave: Some(&args.leave),
+        pick: Some(&args.pick),
         args: &args.solid,
     };
+    if args.each {
+        return each::run(&job, session, report);
+    }
     solid::run(&job, session, report)
 }

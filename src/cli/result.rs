@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::entries::{CrossingEntry, DeviceReport, GridEntry, OutputEntry, SliceEntry};
+use super::entries::{AsideEntry, CrossingEntry, DeviceReport, GridEntry, ObjectEntry, OutputEntry, SliceEntry};
 use crate::compare::Comparison;
 use crate::decimate::DecimateReport;
 use crate::fit::FitReport;
@@ -27,6 +27,16 @@ pub enum RunResult {
     Solid {
         /// What was found and done.
         pipeline: Box<Report>,
+        /// The written file.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        output: Option<OutputEntry>,
+    },
+    /// Of `repair --each`.
+    Objects {
+        /// The objects, in the order of the file.
+        objects: Vec<ObjectEntry>,
+        /// What else is in the file and stays as it is, or is left out where the format of the output has no place for it.
+        aside: Vec<AsideEntry>,
         /// The written file.
         #[serde(skip_serializing_if = "Option::is_none")]
         output: Option<OutputEntry>,
@@ -144,6 +154,7 @@ impl RunResult {
     pub fn output(&self) -> Option<&OutputEntry> {
         match self {
             Self::Solid { output, .. }
+            | Self::Objects { output, .. }
             | Self::Distance { output, .. }
             | Self::Comparison { output, .. }
             | Self::Decimation { output, .. } => output.as_ref(),
@@ -162,6 +173,7 @@ impl RunResult {
     pub fn written(&mut self, entry: OutputEntry) {
         match self {
             Self::Solid { output, .. }
+            | Self::Objects { output, .. }
             | Self::Distance { output, .. }
             | Self::Comparison { output, .. }
             | Self::Decimation { output, .. } => *output = Some(entry),

@@ -16,6 +16,7 @@ use super::length::{Scale, Simplify};
 use super::map::{self, Map};
 use super::output::{in_memory, write_verified};
 use super::paint::{self, Arranged};
+use super::pick::{self, PickArgs};
 use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
@@ -42,6 +43,8 @@ pub struct Job<'a> {
     pub change: Option<&'a Change>,
     /// Which holes are left open, where that can be asked for.
     pub leave: Option<&'a LeaveArgs>,
+    /// Which objects of the one file are taken, where that can be asked for; others are told that they become one.
+    pub pick: Option<&'a PickArgs>,
     /// The flags.
     pub args: &'a SolidArgs,
 }
@@ -59,6 +62,11 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
     args.map.as_deref().map_or(Ok(()), super::compare::check_map)?;
     let mut inputs = report
         .timed(Stage::Read, |report| input::read_operands(&job.paths, &args.reading, session, &mut report.warnings))?;
+    if let (Some(pick), Some(input)) = (job.pick, inputs.first_mut()) {
+        pick.apply(&mut input.loaded, &input.label)?;
+        input.entry.parts = input::part_entries(&input.loaded.parts);
+        report.warnings.extend(pick::fused(&input.loaded, &input.label));
+    }
     for (input, name) in inputs.iter_mut().zip(&job.names) {
         input.entry.name = Some(name.clone());
     }
@@ -75,7 +83,8 @@ pub fn run(job: &Job<'_>, session: &Session, report: &mut RunReport) -> Result<E
     make(job, &expression, &inputs, (&options, &scale), target.as_ref(), session, report)
 }
 
-fn options(
+/// What the flags ask for, for these inputs.
+pub(super) fn options(
     args: &SolidArgs,
     unit: Option<Unit>,
     inputs: &[Input],
@@ -124,7 +133,7 @@ fn fit(args: &SolidArgs, scale: &Scale, inputs: &[Input]) -> Result<Option<FitOp
 }
 
 /// The options as the report states them, after defaults.
-fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_json::Value {
+pub(super) fn resolved(args: &SolidArgs, unit: Option<Unit>, options: &Options) -> serde_json::Value {
     let (resolution, voxel) = match options.voxel {
         VoxelSize::Along(n) => (Some(n), None),
         VoxelSize::Length(length) => (None, Some(length)),
@@ -292,7 +301,7 @@ fn make(
 }
 
 /// The solid that is asked for.
-fn made(
+pub(super) fn made(
     job: &Job<'_>,
     expression: &Expression,
     options: &Options,

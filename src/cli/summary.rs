@@ -114,7 +114,7 @@ pub fn voxel(voxel: f64, dims: [i32; 3], unit: UnitName<'_>) -> String {
     format!("{} ({x} x {y} x {z} of them)", words::length(voxel, unit))
 }
 
-fn solid(validity: &Validity) -> String {
+pub(super) fn solid(validity: &Validity) -> String {
     let mut text = format!(
         "{}, {}",
         words::plural(validity.triangles, "triangle"),
@@ -187,7 +187,7 @@ pub fn plan(plan: &Plan, unit: UnitName<'_>) -> Vec<Row> {
 }
 
 /// As many objects of a file are listed by name.
-const LISTED_OBJECTS: usize = 8;
+const LISTED_OBJECTS: usize = 20;
 
 /// The rows of `inspect`.
 pub fn inspection(input: &Input, validity: &Validity, unit: Option<Unit>) -> Vec<Row> {
@@ -199,9 +199,10 @@ pub fn inspection(input: &Input, validity: &Validity, unit: Option<Unit>) -> Vec
     ];
     let parts = &input.entry.parts;
     let listed = if parts.len() > 1 { parts.len().min(LISTED_OBJECTS) } else { 0 };
-    for part in &parts[..listed] {
+    for (n, part) in parts[..listed].iter().enumerate() {
         let called = if part.name.is_empty() { "(no name)" } else { &part.name };
-        rows.push(("objects", format!("{called}: {}", words::plural(part.triangles, "triangle"))));
+        let number = n + 1;
+        rows.push(("objects", format!("{number} {called}: {}", words::plural(part.triangles, "triangle"))));
     }
     if listed > 0 && parts.len() > listed {
         rows.push(("objects", format!("and {} more", words::count(parts.len() - listed))));

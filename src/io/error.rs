@@ -343,6 +343,12 @@ pub enum WriteProblem {
         /// The file that would be replaced.
         file: PathBuf,
     },
+    /// A scene of several objects for a format that holds one mesh.
+    #[error("{format} holds one mesh and no objects")]
+    NoObjects {
+        /// The format to be written.
+        format: Format,
+    },
     /// The format counts in 32 bits and the mesh is larger.
     #[error("the mesh is too large for {format}")]
     TooLarge {
@@ -368,6 +374,7 @@ impl WriteError {
             WriteProblem::TooLarge { .. } => Some("PLY holds the most"),
             WriteProblem::Io(_)
             | WriteProblem::NoTriangles
+            | WriteProblem::NoObjects { .. }
             | WriteProblem::Index(_)
             | WriteProblem::Coordinate { .. }
             | WriteProblem::Colours { .. }

@@ -38,6 +38,11 @@ impl Format {
         matches!(self, Self::Stl | Self::Glb | Self::Gltf)
     }
 
+    /// Whether a file of the format may hold several objects ([`read_scene`](crate::io::read_scene)).
+    pub fn has_objects(self) -> bool {
+        matches!(self, Self::Obj | Self::Glb | Self::Gltf | Self::ThreeMf)
+    }
+
     /// Every format.
     pub const ALL: [Self; 7] = [Self::Stl, Self::Obj, Self::Ply, Self::Off, Self::Glb, Self::Gltf, Self::ThreeMf];
 

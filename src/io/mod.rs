@@ -15,6 +15,7 @@
 //! | a mesh in a file | [`read`], [`read_as`] | [`write()`], [`write_with`], [`write_painted`] |
 //! | a mesh in arrays | [`of_triangles`], [`of_polygons`] | |
 //! | the bytes of a mesh | [`read_bytes`] | [`encode`], [`encode_coloured`], [`encode_painted`] |
+//! | the objects in the bytes of a file | [`read_scene`] | [`encode_scene`] |
 //! | a lattice in a file | [`read_grid`] | [`write_grid`], [`write_grid_as`] |
 //! | the bytes of a lattice | [`read_grid_bytes`], [`read_grid_within`] | [`encode_grid`] |
 //!
@@ -49,6 +50,8 @@ mod ply;
 mod polygon;
 mod reading;
 mod save;
+mod scene;
+mod slice;
 mod sound;
 mod soup;
 mod stl;
@@ -75,6 +78,9 @@ pub use paint::Paint;
 pub use ply::{FaceMap, VertexMap, encode_face_map, encode_vertex_map};
 pub use reading::{read, read_as, read_bytes};
 pub use save::save_bytes;
+pub use scene::{
+    Aside, Flattened, Placement, Scene, SceneMaterial, SceneObject, ScenePart, encode_scene, flattened, read_scene,
+};
 pub use texture::{ImageKind, Material, SideFile, TexCoords, TextureImage, TextureMap, shown_colours};
 pub use unit::{Unit, UnknownUnit};
 pub use writing::{WriteOptions, encode, encode_coloured, encode_painted, write, write_painted, write_with};

@@ -64,32 +64,21 @@ fn read_file(path: &Path, format: Option<Format>) -> Result<Loaded, FileError> {
 /// # Errors
 /// As [`read`], but for files that cannot be opened.
 pub fn read_bytes(bytes: &[u8], format: Option<Format>, path: Option<&Path>) -> Result<Loaded, FileError> {
-    let plain = match stl::is_exactly_binary(bytes) {
-        true => Cow::Borrowed(bytes),
-        false => encoding::plain(bytes),
-    };
+    let plain = plain(bytes);
     let bytes = plain.as_ref();
-    let found = format.or_else(|| Format::detect(bytes, path));
-    // A name says little: what begins as something else is that.
-    let misnamed = match format.is_none() && Format::from_content(bytes).is_none() {
-        true => foreign::recognise(bytes, path),
-        false => None,
-    };
+    let found = recognised(bytes, format, path)?;
     let loaded = match found {
-        _ if bytes.is_empty() => Err(FileProblem::Empty.into()),
-        _ if misnamed.is_some() => Err(misnamed.unwrap_or(FileProblem::UnknownFormat(Wanted::Mesh)).into()),
-        None => Err(FileProblem::UnknownFormat(Wanted::Mesh).into()),
-        Some(Format::Stl) => stl::read(bytes),
-        Some(Format::Obj) => obj::read(bytes, path),
-        Some(Format::Ply) => ply::read(bytes, path),
-        Some(Format::Off) => off::read(bytes),
-        Some(Format::Glb) => gltf::read_glb(bytes, path),
-        Some(Format::Gltf) => gltf::read_json(bytes, path),
-        Some(Format::ThreeMf) => three_mf::read(bytes),
+        Format::Stl => stl::read(bytes),
+        Format::Obj => obj::read(bytes, path),
+        Format::Ply => ply::read(bytes, path),
+        Format::Off => off::read(bytes),
+        Format::Glb => gltf::read_glb(bytes, path),
+        Format::Gltf => gltf::read_json(bytes, path),
+        Format::ThreeMf => three_mf::read(bytes),
     };
     let mut loaded = loaded.map_err(|error| match format.and_then(|_| foreign::recognise(bytes, None)) {
-        Some(problem) => FileError::from(problem).in_file(path, found),
-        None => error.in_file(path, found),
+        Some(problem) => FileError::from(problem).in_file(path, Some(found)),
+        None => error.in_file(path, Some(found)),
     })?;
     if let (None, Some(named)) = (format, path.and_then(Format::from_path)) {
         let misnamed = named != loaded.format;
@@ -98,4 +87,31 @@ pub fn read_bytes(bytes: &[u8], format: Option<Format>, path: Option<&Path>) -> 
         loaded.warnings.extend(warning);
     }
     Ok(loaded)
+}
+
+/// The bytes as the readers take them.
+pub(super) fn plain(bytes: &[u8]) -> Cow<'_, [u8]> {
+    match stl::is_exactly_binary(bytes) {
+        true => Cow::Borrowed(bytes),
+        false => encoding::plain(bytes),
+    }
+}
+
+/// The format of a file: the one that is given, else the one that the content tells, else that of the name.
+pub(super) fn recognised(bytes: &[u8], format: Option<Format>, path: Option<&Path>) -> Result<Format, FileError> {
+    let found = format.or_else(|| Format::detect(bytes, path));
+    // A name says little: what begins as something else is that.
+    let misnamed = match format.is_none() && Format::from_content(bytes).is_none() {
+        true => foreign::recognise(bytes, path),
+        false => None,
+    };
+    let problem = match (found, misnamed) {
+        _ if bytes.is_empty() => FileProblem::Empty,
+        (_, Some(misnamed)) => misnamed,
+        (None, None) => FileProblem::UnknownFormat(Wanted::Mesh),
+        (Some(found), None) => return Ok(found),
+    };
+    // Bytes that are given as a format and are known as something else are told as that.
+    let problem = format.and_then(|_| foreign::recognise(bytes, None)).unwrap_or(problem);
+    Err(FileError::from(problem).in_file(path, found))
 }

@@ -14,7 +14,7 @@ use super::unit::Unit;
 use crate::mesh::TriMesh;
 
 /// Bytes of a part's name that are kept.
-const LONGEST_NAME: usize = 256;
+pub(super) const LONGEST_NAME: usize = 256;
 
 /// A mesh while it is read. Faces given to it refer to vertices it already has.
 pub(super) struct Soup {

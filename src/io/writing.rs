@@ -199,7 +199,7 @@ pub fn encode_painted(
     match options.format {
         Format::Stl if options.ascii => stl::write_ascii(mesh, out),
         Format::Stl => stl::write_binary(mesh, out),
-        Format::Obj => obj::write(mesh, paint, out),
+        Format::Obj => obj::write(mesh, paint, &[], out),
         Format::Ply if options.ascii => ply::write_ascii(mesh, paint, out),
         Format::Ply => ply::write_binary(mesh, paint, out),
         Format::Off => off::write(mesh, shown_colours(colours, texture).as_deref(), out),

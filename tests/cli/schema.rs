@@ -141,6 +141,7 @@ fn every_verb_reports_what_the_schema_says() {
     for (line, kind) in [
         ("repair testdata/broken_mug.obj -o OUT/mug.stl --resolution 24 --keep-partial", "solid"),
         ("repair testdata/torus.ply -o OUT/torus.stl --resolution 24", "solid"),
+        ("repair testdata/overlapping_boxes.obj --each -o OUT/each.3mf", "objects"),
         ("repair testdata/torus.ply --plan --resolution 24", "plan"),
         ("repair testdata/overlapping_boxes.obj -o OUT/boxes.stl", "solid"),
         ("repair testdata/overlapping_boxes.obj --plan", "plan"),

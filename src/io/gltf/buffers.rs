@@ -66,6 +66,11 @@ impl<'a> Buffers<'a> {
         self.contents.iter().map(|content| content.len()).sum()
     }
 
+    /// The bytes of every buffer, in order.
+    pub(super) fn all(&self) -> impl Iterator<Item = &[u8]> {
+        self.buffers.iter().map(|&(content, length)| &self.contents[content][..length])
+    }
+
     /// The bytes of the buffer view of this number, and its stride.
     pub(super) fn view(&self, document: &Document, index: usize) -> Result<(&[u8], Option<usize>), FileError> {
         let fail = |problem| FileError::item(format!("bufferViews[{index}]"), problem);

@@ -27,7 +27,7 @@ pub(super) struct Content<'a> {
 pub(super) struct Piece {
     pub(super) first: usize,
     pub(super) count: usize,
-    material: Option<u32>,
+    pub(super) material: Option<u32>,
     /// Whether they have texture coordinates.
     pub(super) textured: bool,
 }
@@ -81,13 +81,28 @@ impl<'a> Content<'a> {
 
     /// Bytes of the buffer.
     pub(super) fn bytes(&self) -> usize {
+        let images: usize = self.images.iter().map(|image| image.bytes.len().next_multiple_of(4)).sum();
+        self.geometry_bytes() + images
+    }
+
+    /// Bytes of the buffer up to its images.
+    pub(super) fn geometry_bytes(&self) -> usize {
         let vertices = self.mesh.positions.len();
         let each = 12 + self.colours.as_ref().map_or(0, |_| 8) + self.coordinates.as_ref().map_or(0, |_| 8);
-        let images: usize = self.images.iter().map(|image| image.bytes.len().next_multiple_of(4)).sum();
-        each * vertices + 12 * self.mesh.triangles.len() + images
+        each * vertices + 12 * self.mesh.triangles.len()
     }
 
     pub(super) fn write_buffer(&self, out: &mut dyn Write) -> std::io::Result<()> {
+        self.write_geometry(out)?;
+        for image in &self.images {
+            out.write_all(&image.bytes)?;
+            out.write_all(&[0; 3][..image.bytes.len().next_multiple_of(4) - image.bytes.len()])?;
+        }
+        Ok(())
+    }
+
+    /// Writes positions, indices, colours and coordinates.
+    pub(super) fn write_geometry(&self, out: &mut dyn Write) -> std::io::Result<()> {
         let mut chunk = Vec::with_capacity(1 << 16);
         for points in self.mesh.positions.chunks(4096) {
             chunk.clear();
@@ -113,10 +128,6 @@ impl<'a> Content<'a> {
             chunk.clear();
             coordinates.iter().flatten().for_each(|x| chunk.extend_from_slice(&x.to_le_bytes()));
             out.write_all(&chunk)?;
-        }
-        for image in &self.images {
-            out.write_all(&image.bytes)?;
-            out.write_all(&[0; 3][..image.bytes.len().next_multiple_of(4) - image.bytes.len()])?;
         }
         Ok(())
     }

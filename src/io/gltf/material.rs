@@ -27,6 +27,11 @@ impl Tint {
         Self { factor: [1.0; 4], transparent: false }
     }
 
+    /// White that lets alpha through: colours of vertices stay what they are in the file.
+    pub(super) fn raw() -> Self {
+        Self { factor: [1.0; 4], transparent: true }
+    }
+
     /// Whether it leaves colours as they are, and says nothing where there are none.
     pub(super) fn is_plain(&self) -> bool {
         self.factor[..3] == [1.0; 3] && (!self.transparent || self.factor[3] == 1.0)

@@ -2,11 +2,17 @@
 //! transform is checked here, because its types promise none of them and its traversal panics where one is wrong (see `checked`).
 
 mod accessor;
+mod apart;
 mod buffers;
+mod changed;
 mod checked;
+mod compact;
 mod content;
+mod fresh;
 mod instancing;
 mod material;
+mod pack;
+mod patch;
 mod scene;
 mod texture;
 mod write;
@@ -19,9 +25,12 @@ use gltf::json;
 use self::buffers::Buffers;
 use self::instancing::Instancing;
 use super::error::{FileError, FileProblem};
+use super::scene::Unplaced;
 use super::soup::Expansion;
 use super::{Format, Loaded, Unit};
 
+pub(super) use fresh::write_fresh;
+pub(super) use patch::write_patched;
 pub(super) use write::{write_glb, write_json};
 
 const MAGIC: &[u8] = b"glTF";
@@ -36,12 +45,21 @@ const OF_LOOKS: [&str; 7] =
 
 /// Reads a glTF file in JSON.
 pub(super) fn read_json(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, FileError> {
-    let json = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    read_document(json, None, bytes.len(), path, Format::Gltf)
+    Opened::new(bytes, Format::Gltf, path)?.read(path)
 }
 
 /// Reads a binary glTF file: a header and chunks, the JSON first.
 pub(super) fn read_glb(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, FileError> {
+    Opened::new(bytes, Format::Glb, path)?.read(path)
+}
+
+/// Reads the meshes of a file in one of the two formats, each once, and where they are placed.
+pub(super) fn read_apart(bytes: &[u8], format: Format, path: Option<&Path>) -> Result<Unplaced, FileError> {
+    apart::read(Opened::new(bytes, format, path)?, path)
+}
+
+/// The JSON of a binary file, and the bytes of its buffer.
+fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), FileError> {
     let word = |at: usize| bytes.get(at..at + 4).and_then(|w| w.try_into().ok()).map(u32::from_le_bytes);
     let truncated = |expected: &str| {
         let found = format!("the file ends after {} bytes", bytes.len());
@@ -69,31 +87,47 @@ pub(super) fn read_glb(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, File
         rest = after;
     }
     let json = chunks[0].ok_or_else(|| FileError::byte(12, FileProblem::syntax("a JSON chunk", "none")))?;
-    read_document(json, chunks[1], bytes.len(), path, Format::Glb)
+    Ok((json, chunks[1]))
 }
 
-fn read_document(
-    text: &[u8],
-    binary: Option<&[u8]>,
-    length: usize,
-    path: Option<&Path>,
+/// A document that can be read, and its buffers.
+struct Opened<'a> {
     format: Format,
-) -> Result<Loaded, FileError> {
-    // An empty object, two bytes, becomes hundreds of bytes in memory; in real files each has members.
-    let (objects, limit) = (text.iter().filter(|&&b| b == b'{').count(), 1024 + text.len() / 8);
-    if objects > limit {
-        return Err(FileProblem::TooLarge { what: "JSON objects", limit: limit as u64 }.into());
+    text: &'a [u8],
+    document: Document,
+    /// What it requires and is left out.
+    looks: Option<String>,
+    instancing: Instancing,
+    buffers: Buffers<'a>,
+    allowance: Expansion,
+}
+
+impl<'a> Opened<'a> {
+    fn new(bytes: &'a [u8], format: Format, path: Option<&Path>) -> Result<Self, FileError> {
+        let (text, binary) = match format {
+            Format::Glb => chunks(bytes)?,
+            _ => (bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None),
+        };
+        // An empty object, two bytes, becomes hundreds of bytes in memory; in real files each has members.
+        let (objects, limit) = (text.iter().filter(|&&b| b == b'{').count(), 1024 + text.len() / 8);
+        if objects > limit {
+            return Err(FileProblem::TooLarge { what: "JSON objects", limit: limit as u64 }.into());
+        }
+        check_version(text)?;
+        let root: json::Root = json::deserialize::from_slice(text).map_err(|e| not_gltf(&e))?;
+        let document = Document::from_json_without_validation(root);
+        let looks = check_required(&document)?;
+        let instancing = Instancing::read(&document, text).map_err(|e| not_gltf(&e))?;
+        let buffers = Buffers::load(&document, binary, path)?;
+        let allowance = Expansion::for_input(bytes.len().max(buffers.bytes()) as u64);
+        Ok(Self { format, text, document, looks, instancing, buffers, allowance })
     }
-    check_version(text)?;
-    let root: json::Root = json::deserialize::from_slice(text).map_err(|e| not_gltf(&e))?;
-    let document = Document::from_json_without_validation(root);
-    let looks = check_required(&document)?;
-    let instancing = Instancing::read(&document, text).map_err(|e| not_gltf(&e))?;
-    let buffers = Buffers::load(&document, binary, path)?;
-    let mut allowance = Expansion::for_input(length.max(buffers.bytes()) as u64);
-    let mut soup = scene::read(&document, &instancing, &buffers, &mut allowance, path)?;
-    soup.warnings.extend(looks);
-    soup.finish(format, Some(unit(&document, text)))
+
+    fn read(mut self, path: Option<&Path>) -> Result<Loaded, FileError> {
+        let mut soup = scene::read(&self.document, &self.instancing, &self.buffers, &mut self.allowance, path)?;
+        soup.warnings.extend(self.looks.take());
+        soup.finish(self.format, Some(unit(&self.document, self.text)))
+    }
 }
 
 /// The version that a document states.

@@ -7,7 +7,7 @@ use std::path::Path;
 use glam::{DMat4, DQuat, DVec3};
 use gltf::mesh::Mode;
 use gltf::scene::Transform;
-use gltf::{Accessor, Document, Semantic};
+use gltf::{Accessor, Document, Node, Semantic};
 
 use super::super::error::{FileError, FileProblem};
 use super::super::soup::{Expansion, Soup, too_many_vertices};
@@ -28,18 +28,7 @@ pub(super) fn read(
     allowance: &mut Expansion,
     path: Option<&Path>,
 ) -> Result<Soup, FileError> {
-    let mut reader = Reader {
-        document,
-        instancing,
-        buffers,
-        allowance,
-        soup: Soup::new(),
-        used: vec![false; document.meshes().len()],
-        other_primitives: 0,
-        points: 0,
-        looks: Looks::new(document, buffers, path),
-        posed: 0,
-    };
+    let mut reader = Reader::new(document, instancing, buffers, allowance, Looks::new(document, buffers, path));
     match tops(document)? {
         Some(tops) => reader.nodes(&tops)?,
         None => (0..document.meshes().len()).try_for_each(|mesh| reader.mesh(mesh, "", &DMat4::IDENTITY))?,
@@ -48,7 +37,7 @@ pub(super) fn read(
 }
 
 /// The numbers of the nodes to start from; `None` when the file has no nodes.
-fn tops(document: &Document) -> Result<Option<Vec<usize>>, FileError> {
+pub(super) fn tops(document: &Document) -> Result<Option<Vec<usize>>, FileError> {
     if let Some(scene) = checked::scene(document)? {
         return Ok(Some(checked::tops(document, &scene)));
     }
@@ -64,7 +53,30 @@ fn tops(document: &Document) -> Result<Option<Vec<usize>>, FileError> {
     Ok(Some((0..is_child.len()).filter(|&node| !is_child[node]).collect()))
 }
 
-struct Reader<'a, 'b> {
+/// Walks the trees under `tops` depth first, and hands out each node with its transform. A node has one parent at most, so a node met
+/// twice is an error; that also ends cycles.
+pub(super) fn walk<'a>(
+    document: &'a Document,
+    tops: &[usize],
+    mut visit: impl FnMut(usize, &Node<'a>, &DMat4) -> Result<(), FileError>,
+) -> Result<(), FileError> {
+    let mut met = vec![false; document.nodes().len()];
+    let mut stack: Vec<_> = tops.iter().rev().map(|&top| (top, DMat4::IDENTITY)).collect();
+    while let Some((i, parent)) = stack.pop() {
+        let fail = |problem| FileError::item(format!("nodes[{i}]"), problem);
+        let node = checked::node(document, i).map_err(fail)?;
+        if std::mem::replace(&mut met[i], true) {
+            return Err(fail(FileProblem::syntax("a tree of nodes", "a node that is reached twice")));
+        }
+        let place = parent * matrix(node.transform());
+        visit(i, &node, &place)?;
+        stack.extend(checked::children(document, &node).into_iter().rev().map(|child| (child, place)));
+    }
+    Ok(())
+}
+
+/// What is read of meshes.
+pub(super) struct Reader<'a, 'b> {
     document: &'a Document,
     instancing: &'a Instancing,
     buffers: &'a Buffers<'a>,
@@ -87,33 +99,58 @@ struct Shared {
     colours: BTreeMap<usize, Vec<[f32; 4]>>,
 }
 
-impl<'a> Reader<'a, '_> {
-    /// Walks the trees under `tops` depth first. A node has one parent at most, so a node met
-    /// twice is an error; that also ends cycles.
-    fn nodes(&mut self, tops: &[usize]) -> Result<(), FileError> {
-        let mut met = vec![false; self.document.nodes().len()];
-        let mut stack: Vec<_> = tops.iter().rev().map(|&top| (top, DMat4::IDENTITY)).collect();
-        while let Some((i, parent)) = stack.pop() {
-            let fail = |problem| FileError::item(format!("nodes[{i}]"), problem);
-            let node = checked::node(self.document, i).map_err(fail)?;
-            if std::mem::replace(&mut met[i], true) {
-                return Err(fail(FileProblem::syntax("a tree of nodes", "a node that is reached twice")));
-            }
-            let place = parent * matrix(node.transform());
-            if let Some((mesh, is_posed)) = checked::mesh_of(self.document, &node) {
-                self.posed += usize::from(is_posed);
-                let name = node.name().unwrap_or_default();
-                match self.instancing.of(i, self.document, self.buffers, self.allowance)? {
-                    Some(copies) => copies.places().try_for_each(|copy| self.mesh(mesh, name, &(place * copy)))?,
-                    None => self.mesh(mesh, name, &place)?,
-                }
-            }
-            stack.extend(checked::children(self.document, &node).into_iter().rev().map(|child| (child, place)));
+impl<'a, 'b> Reader<'a, 'b> {
+    pub(super) fn new(
+        document: &'a Document,
+        instancing: &'a Instancing,
+        buffers: &'a Buffers<'a>,
+        allowance: &'b mut Expansion,
+        looks: Looks<'a>,
+    ) -> Self {
+        Self {
+            document,
+            instancing,
+            buffers,
+            allowance,
+            soup: Soup::new(),
+            used: vec![false; document.meshes().len()],
+            other_primitives: 0,
+            points: 0,
+            looks,
+            posed: 0,
         }
-        Ok(())
     }
 
-    fn mesh(&mut self, i: usize, name: &str, place: &DMat4) -> Result<(), FileError> {
+    /// Adds the meshes of the trees under `tops`.
+    fn nodes(&mut self, tops: &[usize]) -> Result<(), FileError> {
+        let document = self.document;
+        walk(document, tops, |i, node, place| {
+            let Some((mesh, is_posed)) = checked::mesh_of(document, node) else { return Ok(()) };
+            self.posed += usize::from(is_posed);
+            let name = node.name().unwrap_or_default();
+            self.each_copy(i, place, |reader, place| reader.mesh(mesh, name, place))
+        })
+    }
+
+    /// Hands out the places of the mesh of a node that has this transform itself, one by one: there may be any number.
+    pub(super) fn each_copy(
+        &mut self,
+        node: usize,
+        place: &DMat4,
+        mut visit: impl FnMut(&mut Self, &DMat4) -> Result<(), FileError>,
+    ) -> Result<(), FileError> {
+        match self.instancing.of(node, self.document, self.buffers, self.allowance)? {
+            Some(copies) => copies.places().try_for_each(|copy| visit(self, &(*place * copy))),
+            None => visit(self, place),
+        }
+    }
+
+    /// Counts a place of a mesh, which takes as much memory as a few vertices.
+    pub(super) fn count_place(&mut self) -> Result<(), FileError> {
+        Ok(self.allowance.spend(4)?)
+    }
+
+    pub(super) fn mesh(&mut self, i: usize, name: &str, place: &DMat4) -> Result<(), FileError> {
         let fail = |problem| FileError::item(format!("meshes[{i}]"), problem);
         let mesh = checked::mesh(self.document, i).map_err(fail)?;
         self.used[i] = true;
@@ -205,7 +242,8 @@ impl<'a> Reader<'a, '_> {
     ) -> Result<(), FileError> {
         let mut tint = primitive.material()?.map_or_else(Tint::plain, |material| Tint::of(self.document, &material));
         if self.looks.keeps_colours {
-            tint = Tint::plain();
+            // Colours of vertices are there only where materials go by their numbers.
+            tint = Tint::raw();
         }
         if self.looks.is_textured {
             self.looks.hang(primitive, (start, first), &mut self.soup, self.allowance);
@@ -255,7 +293,15 @@ impl<'a> Reader<'a, '_> {
         Ok((first as u32, points.len()))
     }
 
-    fn finish(mut self) -> Soup {
+    /// What was read where all else is told by name.
+    pub(super) fn finish_apart(mut self) -> Soup {
+        (self.other_primitives, self.points, self.posed) = (0, 0, 0);
+        self.used.fill(true);
+        self.finish()
+    }
+
+    /// What was read, with sentences on what was not.
+    pub(super) fn finish(mut self) -> Soup {
         // A file of points alone is named as such.
         let points = if self.soup.triangles.is_empty() { 0 } else { self.points };
         let mut warn = |count: usize, what: &str, rest: &str| {

@@ -25,6 +25,8 @@ pub(super) struct Looks<'a> {
     pub(super) is_textured: bool,
     /// Whether the colours of materials stay theirs: not where vertices have colours that they are multiplied by.
     pub(super) keeps_colours: bool,
+    /// Whether materials go by their numbers in the document, which keeps them as they are.
+    is_numbered: bool,
     /// Our numbers of materials, by those of the document.
     numbers: BTreeMap<usize, u32>,
     coordinates: BTreeMap<usize, Option<Vec<[f32; 2]>>>,
@@ -46,11 +48,18 @@ impl<'a> Looks<'a> {
             gallery: Gallery::beside(path),
             is_textured,
             keeps_colours: is_textured && !has(Semantic::Colors(0)),
+            is_numbered: false,
             numbers: BTreeMap::new(),
             coordinates: BTreeMap::new(),
             others: 0,
             warnings: Vec::new(),
         }
+    }
+
+    /// The same for a document whose materials stay what they are: each goes by its number, and its colour is not multiplied into those of the
+    /// vertices.
+    pub(super) fn numbered(document: &'a Document, buffers: &'a Buffers<'a>, path: Option<&'a Path>) -> Self {
+        Self { is_textured: true, keeps_colours: true, is_numbered: true, ..Self::new(document, buffers, path) }
     }
 
     /// Gives the triangles from number `start` on, whose vertices are counted from `first`, their material and coordinates.
@@ -115,7 +124,10 @@ impl<'a> Looks<'a> {
         let image = checked::base_texture(self.document, material).and_then(|(texture, _)| self.image(texture));
         let colour = (self.keeps_colours && !tint.is_plain()).then(|| tint.applied_to([1.0; 4], &mut 0));
         let own = soup.texture.materials.len() as u32;
-        let name = material.name().unwrap_or_default().to_owned();
+        let name = match self.is_numbered {
+            true => number.to_string(),
+            false => material.name().unwrap_or_default().to_owned(),
+        };
         soup.texture.materials.push(io::Material { name, colour, image });
         self.numbers.insert(number, own);
         Some(own)

@@ -123,7 +123,7 @@ fn primitive(content: &Content<'_>, piece: &Piece, accessors: [Option<usize>; 3]
     primitive
 }
 
-fn index_accessor(view: usize, piece: &Piece) -> Value {
+pub(super) fn index_accessor(view: usize, piece: &Piece) -> Value {
     let mut accessor =
         json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": 3 * piece.count, "type": "SCALAR" });
     if piece.first > 0 {

@@ -1,6 +1,7 @@
 //! Wavefront OBJ: vertices with or without colours, faces with texture coordinates, objects and groups, materials; everything else is
 //! passed over.
 
+mod apart;
 mod materials;
 mod write;
 
@@ -9,24 +10,31 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use self::apart::Section;
 use self::materials::Looks;
 use super::colour::LEVELS_OF_WHITE;
 use super::error::{FileError, FileProblem};
-use super::soup::{Soup, too_many_vertices};
+use super::soup::{LONGEST_NAME, Soup, too_many_vertices};
 use super::text::{Lines, Words, counted, integer, number, quoted, quoted_or_end};
 use super::{Format, Loaded};
 
+pub(super) use apart::read_apart;
 pub(super) use write::write;
 
 /// Reads the file at `path`, beside which its materials and images lie.
 pub(super) fn read(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, FileError> {
     let mut reader = Reader::default();
+    read_all(bytes, &mut reader)?;
+    reader.finish(path)
+}
+
+fn read_all(bytes: &[u8], reader: &mut Reader) -> Result<(), FileError> {
     let mut lines = Lines::new(bytes);
     while let Some((first, line)) = lines.next() {
         let line = continued(line, &mut lines);
         reader.statement(&line, first)?;
     }
-    reader.finish(path)
+    Ok(())
 }
 
 /// `line` joined with the ones after it while it ends in a backslash.
@@ -62,11 +70,21 @@ struct Reader {
     passed_over: usize,
     /// Statements of points passed over.
     points: usize,
+    /// Where objects are wanted: what each part is; the parts go by their numbers.
+    sections: Option<Vec<Section>>,
 }
 
 impl Default for Reader {
     fn default() -> Self {
-        Self { soup: Soup::new(), looks: Looks::default(), face: Vec::new(), largest: None, passed_over: 0, points: 0 }
+        Self {
+            soup: Soup::new(),
+            looks: Looks::default(),
+            face: Vec::new(),
+            largest: None,
+            passed_over: 0,
+            points: 0,
+            sections: None,
+        }
     }
 }
 
@@ -76,8 +94,8 @@ impl Reader {
         match words.next() {
             Some(b"v") => self.vertex(words, at),
             Some(b"f" | b"fo") => self.face(words, at),
-            Some(b"o" | b"g") => {
-                self.soup.begin_part(words.rest());
+            Some(kind @ (b"o" | b"g")) => {
+                self.part(kind == b"o", words.rest());
                 Ok(())
             }
             Some(b"vt") => {
@@ -102,6 +120,14 @@ impl Reader {
             }
             _ => Ok(()),
         }
+    }
+
+    fn part(&mut self, is_object: bool, name: &[u8]) {
+        let Some(sections) = &mut self.sections else { return self.soup.begin_part(name) };
+        let name = String::from_utf8_lossy(&name[..name.len().min(LONGEST_NAME)]).trim().to_owned();
+        let next = sections.last().cloned().unwrap_or_default().next(is_object, name);
+        self.soup.begin_part(sections.len().to_string().as_bytes());
+        sections.push(next);
     }
 
     /// Three coordinates, and a colour if exactly three numbers follow; anything else after them is passed over.

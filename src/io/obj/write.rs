@@ -4,15 +4,20 @@ use std::io::Write;
 
 use rustc_hash::FxHashMap;
 
-use super::super::Paint;
 use super::super::colour::vertex_means;
 use super::super::error::WriteError;
 use super::super::text::TextOut;
 use super::super::texture::{TextureMap, library_name};
+use super::super::{Paint, Part};
 use crate::mesh::TriMesh;
 
-/// Writes positions, with a colour after each if there are colours, texture coordinates and triangles.
-pub(in crate::io) fn write(mesh: &TriMesh, paint: &Paint<'_>, out: &mut dyn Write) -> Result<(), WriteError> {
+/// Writes positions, with a colour after each if there are colours, texture coordinates and triangles, and the names of `parts` before theirs.
+pub(in crate::io) fn write(
+    mesh: &TriMesh,
+    paint: &Paint<'_>,
+    parts: &[Part],
+    out: &mut dyn Write,
+) -> Result<(), WriteError> {
     let mut text = TextOut::new(out);
     let texture = paint.texture;
     if let (Some(path), true) = (paint.beside, texture.is_some_and(TextureMap::has_library)) {
@@ -37,7 +42,11 @@ pub(in crate::io) fn write(mesh: &TriMesh, paint: &Paint<'_>, out: &mut dyn Writ
     let corners = texture.map(|texture| write_coordinates(texture, &mut text)).transpose()?.unwrap_or_default();
     let names = texture.map(TextureMap::material_names).unwrap_or_default();
     let mut current = None;
+    let mut parts = parts.iter().peekable();
     for (triangle, t) in mesh.triangles.iter().enumerate() {
+        if let Some(part) = parts.next_if(|part| part.triangles.start == triangle) {
+            text.text(&format!("o {}\n", part.name));
+        }
         let material = texture.and_then(|texture| texture.material_of[triangle]);
         if material != current {
             let name = material.and_then(|material| names.get(material as usize)).map_or("none", String::as_str);

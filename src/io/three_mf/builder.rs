@@ -8,6 +8,7 @@ use super::super::colour::{Rgba, WHITE};
 use super::super::error::{FileError, FileProblem, Location};
 use super::super::soup::{Expansion, Soup, too_many_vertices};
 use super::super::text::{counted, quoted};
+use super::apart::Apart;
 use super::model::{Object, Placed};
 use super::models::{Inherited, Models};
 use super::roles::{Role, Roles};
@@ -53,6 +54,8 @@ pub(super) struct Builder<'a> {
     colourless: usize,
     /// Names of pieces that were left out, by what they are.
     helpers: BTreeMap<&'static str, Vec<String>>,
+    /// Where every object is added once, in its own coordinates: what there is to know of each.
+    apart: Option<Apart>,
 }
 
 impl<'a> Builder<'a> {
@@ -71,7 +74,13 @@ impl<'a> Builder<'a> {
             textures: Textures::default(),
             colourless: 0,
             helpers: BTreeMap::new(),
+            apart: None,
         }
+    }
+
+    /// The same where every object is added once, in its own coordinates.
+    pub(super) fn apart(self) -> Self {
+        Self { apart: Some(Apart::default()), textures: Textures::of_all(), ..self }
     }
 
     /// Adds an item of the build: an object and all its components, depth first and in order.
@@ -133,7 +142,9 @@ impl<'a> Builder<'a> {
         let default = object.default.map(|property| Inherited { model, property }).or(outer.default);
         let transform = outer.transform * item.transform;
         // An empty object and the name count too, so that steps and memory are bounded.
-        let cost = 4 + name.len() / 16 + object.vertices.len() + object.triangles.len();
+        let adds_again = self.apart.is_none() || !self.placed.contains(&(model, item.object));
+        let content = if adds_again { object.vertices.len() + object.triangles.len() } else { 0 };
+        let cost = 4 + name.len() / 16 + content;
         let read = self.models.package.bytes_read();
         let allowance = self.allowance.get_or_insert_with(|| Expansion::for_input(read));
         let spent = allowance.spend(cost as u64);
@@ -154,7 +165,7 @@ impl<'a> Builder<'a> {
         }
         let volumes = if open.model == self.root { self.roles.volumes(open.object) } else { &[] };
         if volumes.is_empty() || open.role != Role::Part {
-            let all = Piece { name: &open.name, triangles: None };
+            let all = Piece { name: &open.name, number: None, triangles: None };
             return match self.target(open.role, &open.name) {
                 Some(negative) => self.add_piece(open, all, negative),
                 None => Ok(()),
@@ -164,28 +175,33 @@ impl<'a> Builder<'a> {
         let count = object.triangles.len();
         let mut taken = vec![false; count];
         let mut pieces = Vec::new();
-        for volume in &volumes {
+        for (number, volume) in volumes.iter().enumerate() {
             let numbers = volume.triangles.clone().take_while(|t| *t < count);
             let triangles: Vec<usize> = numbers.filter(|&t| !std::mem::replace(&mut taken[t], true)).collect();
             if let Some(negative) = self.target(volume.role, &volume.name)
                 && !triangles.is_empty()
             {
-                pieces.push((&volume.name, triangles, negative));
+                pieces.push((&volume.name, number, triangles, negative));
             }
         }
         let rest: Vec<usize> = (0..count).filter(|&t| !taken[t]).collect();
         if !rest.is_empty() {
-            pieces.push((&open.name, rest, false));
+            pieces.push((&open.name, volumes.len(), rest, false));
         }
-        pieces.into_iter().try_for_each(|(name, triangles, negative)| {
-            self.add_piece(open, Piece { name, triangles: Some(triangles) }, negative)
+        pieces.into_iter().try_for_each(|(name, number, triangles, negative)| {
+            let name = if name.is_empty() { &open.name } else { name };
+            self.add_piece(open, Piece { name, number: Some(number), triangles: Some(triangles) }, negative)
         })
     }
 
     /// Whether a piece of this role is taken away; `None` when it is left out, which is noted.
     fn target(&mut self, role: Role, name: &str) -> Option<bool> {
+        if let Some(apart) = &mut self.apart {
+            apart.leave(role, name);
+        }
         match role {
             Role::Part => Some(false),
+            Role::Negative if self.apart.is_some() => None,
             Role::Negative => Some(true),
             Role::Helper(what) => {
                 self.helpers.entry(what).or_default().push(name.to_owned());
@@ -198,6 +214,17 @@ impl<'a> Builder<'a> {
         let Some(object) = self.models.loaded[open.model].objects.get(&open.object) else { return Ok(()) };
         let soup = if negative { &mut self.negative } else { &mut self.soup };
         let numbers = piece.triangles.unwrap_or_else(|| (0..object.triangles.len()).collect());
+        if let Some(apart) = &mut self.apart {
+            let model = &self.models.loaded[open.model].name;
+            let Some(number) = apart.place((model, open.object, piece.number), object, piece.name, open.transform)
+            else {
+                return Ok(());
+            };
+            add_mesh(soup, object, &number.to_string(), &numbers, &DAffine3::IDENTITY)?;
+            let corners = self.textures.cover(soup, &self.models, (object, open.model), &numbers, open.default);
+            soup.colours.paint(soup.triangles.len() - numbers.len(), corners);
+            return Ok(());
+        }
         add_mesh(soup, object, piece.name, &numbers, &open.transform)?;
         if !negative && (open.default.is_some() || !object.properties.is_empty()) {
             let own = |t: usize| object.properties.get(t).copied().flatten();
@@ -211,6 +238,20 @@ impl<'a> Builder<'a> {
     fn fail(&self, model: usize, object: u32, problem: FileProblem) -> FileError {
         let name = &self.models.loaded[model].name;
         FileError::at(Location::Item(format!("{name}, object {object}")), problem)
+    }
+
+    /// What is there, each object once, and what there is to know of each.
+    pub(super) fn finish_apart(mut self) -> (Soup, Apart) {
+        let mut apart = self.apart.take().unwrap_or_default();
+        let mut soup = std::mem::replace(&mut self.soup, Soup::new());
+        apart.materials = self.textures.finish(&mut self.models, &mut soup);
+        // What stays as it is in a file of the same kind is told by name.
+        (self.textures, self.helpers) = (Textures::default(), BTreeMap::new());
+        let images = std::mem::take(&mut soup.warnings);
+        let (mut rest, _) = self.finish();
+        apart.lost_elsewhere.append(&mut rest.warnings);
+        apart.lost_elsewhere.extend(images);
+        (soup, apart)
     }
 
     /// What is there, and what is taken away from it.
@@ -270,6 +311,8 @@ fn listed(names: &[String]) -> String {
 /// Some of the triangles of an object, or all.
 struct Piece<'a> {
     name: &'a str,
+    /// Which of the volumes of a slicer it is; one after the last for what is in none.
+    number: Option<usize>,
     triangles: Option<Vec<usize>>,
 }
 

@@ -25,6 +25,8 @@ pub(super) struct Model {
     pub(super) objects: BTreeMap<u32, Object>,
     /// Groups of colours and of base materials: the colours of their entries.
     pub(super) groups: BTreeMap<u32, Vec<Rgba>>,
+    /// The names of the entries of groups of base materials.
+    pub(super) names: BTreeMap<u32, Vec<String>>,
     /// The files of images.
     pub(super) textures: BTreeMap<u32, String>,
     /// Groups of places on an image: the image, and the places of their entries.
@@ -57,12 +59,16 @@ pub(super) struct Object {
     pub(super) components: Vec<Placed>,
     /// What the object is for, by its type and its settings.
     pub(super) role: Role,
+    /// Whether triangles have something that is not read, as slicers paint it on them.
+    pub(super) is_painted: bool,
+    /// Whether the mesh has something beside vertices and triangles.
+    pub(super) has_more: bool,
 }
 
 impl Object {
     fn add_triangle(&mut self, element: &BytesStart<'_>) -> Result<(), FileProblem> {
         let triangle = triangle(element, self.vertices.len())?;
-        if let Some(property) = property(element, self.default)? {
+        if let Some(property) = property(element, self.default, &mut self.is_painted)? {
             self.properties.resize(self.triangles.len(), None);
             self.properties.push(Some(property));
         }
@@ -94,6 +100,7 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
         unit: Unit::Millimetre,
         objects: BTreeMap::new(),
         groups: BTreeMap::new(),
+        names: BTreeMap::new(),
         textures: BTreeMap::new(),
         places: BTreeMap::new(),
         items: Vec::new(),
@@ -131,12 +138,18 @@ pub(super) fn parse(xml: &mut Xml<'_>, name: &str) -> Result<Model, XmlError> {
                             }
                         }
                         (b"mesh", Some(_)) => in_mesh = true,
+                        (name, Some((_, object))) if in_mesh => {
+                            object.has_more |= !matches!(name, b"vertices" | b"triangles");
+                        }
                         (b"metadata", Some(_)) => setting = attribute(&e, b"name").and_then(|n| Role::of_cura(&n)),
                         (b"component", Some((_, object))) => object.components.push(placed(&e)?),
                         (b"item", None) => model.items.push(placed(&e)?),
                         (kind @ (b"base" | b"color"), _) => {
                             if let Some((_, colours)) = &mut group {
                                 colours.push(colour(&e, if kind == b"base" { b"displaycolor" } else { b"color" })?);
+                            }
+                            if let (b"base", Some((id, _))) = (kind, &group) {
+                                model.names.entry(*id).or_default().push(name_of(&e));
                             }
                         }
                         _ => {}
@@ -208,12 +221,18 @@ fn new_object(element: &BytesStart<'_>) -> Result<Object, FileProblem> {
         default,
         components: Vec::new(),
         role: attribute(element, b"type").map_or(Role::Part, |kind| Role::of_type(kind.trim_ascii())),
+        is_painted: false,
+        has_more: false,
     })
 }
 
 /// What a triangle has of its own: an entry for each corner, or one for all, of a group that the object names if the triangle
-/// does not.
-fn property(element: &BytesStart<'_>, default: Option<Property>) -> Result<Option<Property>, FileProblem> {
+/// does not. `is_painted` is set where there is more than that.
+fn property(
+    element: &BytesStart<'_>,
+    default: Option<Property>,
+    is_painted: &mut bool,
+) -> Result<Option<Property>, FileProblem> {
     let mut group = default.map(|property| property.group);
     let mut entries = [None; 3];
     let mut attributes = element.attributes();
@@ -224,7 +243,8 @@ fn property(element: &BytesStart<'_>, default: Option<Property>) -> Result<Optio
             b"p1" => entries[0] = Some(number()?),
             b"p2" => entries[1] = Some(number()?),
             b"p3" => entries[2] = Some(number()?),
-            _ => {}
+            b"v1" | b"v2" | b"v3" => {}
+            _ => *is_painted = true,
         }
     }
     Ok(match (group, entries) {

@@ -98,7 +98,7 @@ impl<'a> Package<'a> {
 
     /// Names of a package start with a slash in references and without in the archive, and do not
     /// differ by case alone.
-    fn find(&self, name: &str) -> Option<usize> {
+    pub(super) fn find(&self, name: &str) -> Option<usize> {
         let name = name.trim_start_matches('/');
         self.archive.index_for_name(name).or_else(|| {
             (0..self.archive.len())

@@ -73,7 +73,7 @@ pub(super) struct Volume {
 pub(super) struct Roles {
     /// Of a component of an object of the root model.
     components: BTreeMap<(u32, u32), (String, Role)>,
-    /// Of ranges of triangles of an object of the root model, those that are material left out.
+    /// Of ranges of triangles of an object of the root model.
     volumes: BTreeMap<u32, Vec<Volume>>,
     /// Roles that are not known.
     unknown: BTreeSet<String>,
@@ -82,14 +82,18 @@ pub(super) struct Roles {
 }
 
 impl Roles {
+    /// The settings files of slicers in a package.
+    pub(super) fn files(package: &Package<'_>) -> Vec<String> {
+        let mut names = package.files(|name| name.starts_with("metadata/") && name.ends_with(".config"));
+        // Settings of the print and of layers stand in files of the same ending.
+        names.retain(|name| name.to_ascii_lowercase().contains("model"));
+        names
+    }
+
     /// Reads them from every settings file of a slicer in the package.
     pub(super) fn read(package: &mut Package<'_>) -> Self {
         let mut roles = Self::default();
-        for name in package.files(|name| name.starts_with("metadata/") && name.ends_with(".config")) {
-            // Settings of the print and of layers stand in files of the same ending.
-            if !name.to_ascii_lowercase().contains("model") {
-                continue;
-            }
+        for name in Self::files(package) {
             if let Err(error) = package.read_xml(&name, |xml| roles.parse(xml)) {
                 roles.warnings.push(format!("what the slicer says of the parts is not read: {error}"));
             }
@@ -105,9 +109,12 @@ impl Roles {
         self.components.get(&(object, component))
     }
 
-    /// The ranges of triangles of `object` that are not material.
+    /// The ranges of triangles of `object`; nothing where one of material is all there is.
     pub(super) fn volumes(&self, object: u32) -> &[Volume] {
-        self.volumes.get(&object).map_or(&[], Vec::as_slice)
+        match self.volumes.get(&object).map_or(&[][..], Vec::as_slice) {
+            [Volume { role: Role::Part, .. }] => &[],
+            volumes => volumes,
+        }
     }
 
     fn parse(&mut self, xml: &mut Xml<'_>) -> Result<(), XmlError> {
@@ -151,7 +158,7 @@ impl Roles {
         };
         let Piece { id, name, first, last, .. } = piece;
         match (first, last) {
-            (Some(first), Some(last)) if role != Role::Part => {
+            (Some(first), Some(last)) => {
                 let volume = Volume { name, role, triangles: first..=last };
                 self.volumes.entry(object).or_default().push(volume);
             }

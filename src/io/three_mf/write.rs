@@ -5,25 +5,24 @@ use std::io::{Cursor, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use rustc_hash::FxHashMap;
-
-use super::super::colour::{Colours, Rgba, WHITE};
+use super::super::colour::Colours;
 use super::super::error::WriteError;
 use super::super::text::TextOut;
+use super::palette::Palette;
 use super::pictures::Pictures;
 use crate::io::{Paint, Unit, shown_colours};
 use crate::mesh::TriMesh;
 
-const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+pub(super) const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>
 "#;
 
-const RELATIONSHIPS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
+pub(super) const RELATIONSHIPS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
 "#;
 
 /// What is added to the types of files where there are images.
-const TYPES_OF_IMAGES: &str = r#"<Default Extension="png" ContentType="image/png"/><Default Extension="jpg" ContentType="image/jpeg"/><Default Extension="jpeg" ContentType="image/jpeg"/></Types>"#;
+pub(super) const TYPES_OF_IMAGES: &str = r#"<Default Extension="png" ContentType="image/png"/><Default Extension="jpg" ContentType="image/jpeg"/><Default Extension="jpeg" ContentType="image/jpeg"/></Types>"#;
 
 /// Writes a package. Without a unit the model states none, which means millimetres.
 pub(in crate::io) fn write(
@@ -62,60 +61,6 @@ pub(in crate::io) fn write(
     Ok(out.write_all(&bytes)?)
 }
 
-/// The entries of the one group of colours: each colour once, in order of first use.
-struct Palette<'a> {
-    mesh: &'a TriMesh,
-    colours: Option<&'a Colours>,
-    entries: Vec<Rgba>,
-    numbers: FxHashMap<Rgba, u32>,
-}
-
-impl<'a> Palette<'a> {
-    /// The colours of the triangles that are wanted.
-    fn new(mesh: &'a TriMesh, colours: Option<&'a Colours>, wanted: impl Fn(usize) -> bool) -> Self {
-        let mut palette = Self { mesh, colours, entries: Vec::new(), numbers: FxHashMap::default() };
-        for triangle in (0..mesh.triangles.len()).filter(|t| wanted(*t)) {
-            for colour in palette.corners(triangle) {
-                // There are at most 2³² different colours.
-                let next = palette.entries.len() as u32;
-                if *palette.numbers.entry(colour).or_insert(next) == next {
-                    palette.entries.push(colour);
-                }
-            }
-        }
-        palette
-    }
-
-    /// The colours of a triangle; white where there are none.
-    fn corners(&self, triangle: usize) -> [Rgba; 3] {
-        self.colours.map_or([WHITE; 3], |colours| colours.corners(self.mesh, triangle))
-    }
-
-    fn write_group(&self, text: &mut TextOut<'_>) -> std::io::Result<()> {
-        text.text("<m:colorgroup id=\"2\">\n");
-        for &[red, green, blue, alpha] in &self.entries {
-            let alpha = if alpha == 255 { String::new() } else { format!("{alpha:02X}") };
-            text.text(&format!("<m:color color=\"#{red:02X}{green:02X}{blue:02X}{alpha}\"/>\n"));
-            text.pass_on()?;
-        }
-        text.text("</m:colorgroup>\n");
-        Ok(())
-    }
-
-    /// The attributes of a triangle: its group, then one entry, or three where the corners differ.
-    fn write_entries(&self, triangle: usize, text: &mut TextOut<'_>) {
-        let corners = self.corners(triangle);
-        let same = corners.iter().all(|colour| *colour == corners[0]);
-        text.text("\" pid=\"2");
-        for (start, colour) in
-            ["\" p1=\"", "\" p2=\"", "\" p3=\""].into_iter().zip(corners).take(if same { 1 } else { 3 })
-        {
-            text.text(start);
-            text.integer(u64::from(self.numbers.get(&colour).copied().unwrap_or_default()));
-        }
-    }
-}
-
 fn write_model(
     mesh: &TriMesh,
     colours: Option<&Colours>,
@@ -129,7 +74,7 @@ fn write_model(
         Some(_) => (0..mesh.triangles.len()).any(|t| !is_picture(t)),
         None => colours.is_some(),
     };
-    let palette = has_palette.then(|| Palette::new(mesh, colours, |t| !is_picture(t)));
+    let palette = has_palette.then(|| Palette::new(2, mesh, colours, |t| !is_picture(t)));
     let mut text = TextOut::new(out);
     text.text("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model");
     if let Some(unit) = unit {
@@ -156,7 +101,7 @@ fn write_model(
         (None, None) => {}
     }
     text.text("><mesh>\n<vertices>\n");
-    write_vertices(mesh, &mut text)?;
+    write_vertices(mesh, "", &mut text)?;
     text.text("</vertices>\n<triangles>\n");
     for (triangle, t) in mesh.triangles.iter().enumerate() {
         for (start, v) in ["<triangle v1=\"", "\" v2=\"", "\" v3=\""].into_iter().zip(t) {
@@ -175,9 +120,12 @@ fn write_model(
     text.finish()
 }
 
-fn write_vertices(mesh: &TriMesh, text: &mut TextOut<'_>) -> std::io::Result<()> {
+/// Writes the vertices; `prefix`: what stands before the names of elements.
+pub(super) fn write_vertices(mesh: &TriMesh, prefix: &str, text: &mut TextOut<'_>) -> std::io::Result<()> {
     for p in &mesh.positions {
-        for (start, x) in ["<vertex x=\"", "\" y=\"", "\" z=\""].into_iter().zip(p.to_array()) {
+        text.text("<");
+        text.text(prefix);
+        for (start, x) in ["vertex x=\"", "\" y=\"", "\" z=\""].into_iter().zip(p.to_array()) {
             text.text(start);
             text.number(x);
         }

@@ -16,6 +16,7 @@ mod mutants;
 mod roles;
 mod round_trip;
 mod samples;
+mod scenes;
 mod saving;
 mod support;
 mod textures;

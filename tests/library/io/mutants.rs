@@ -10,7 +10,7 @@ use super::support::{
 };
 
 /// The committed seeds of the fuzzer and every form that the writers have.
-fn originals() -> Vec<(Format, Vec<u8>)> {
+pub fn originals() -> Vec<(Format, Vec<u8>)> {
     let mut all: Vec<_> = every_form().iter().map(|o| (o.format, encoded(&tetrahedron(), o))).collect();
     all.extend(every_form().iter().map(|o| (o.format, encoded_in_colour(&tetrahedron(), &four_colours(), o))));
     all.extend(every_form().iter().map(|o| (o.format, encoded_with_textures(&tetrahedron(), o))));
@@ -93,6 +93,18 @@ pub fn apply(bytes: &mut Vec<u8>, change: &Change) {
     }
 }
 
+/// A model alone, or what a slicer says of one, is packed, so that changes reach the reader of the XML.
+pub fn packed(format: Format, original: &[u8], bytes: Vec<u8>) -> Vec<u8> {
+    const MODEL: &[u8] = include_bytes!("../../../fuzz/seeds/three_mf/roles.model");
+    if format != Format::ThreeMf || original.starts_with(b"PK") {
+        return bytes;
+    }
+    match original.starts_with(b"<config") {
+        true => zipped(&[("3D/3dmodel.model", MODEL), ("Metadata/model_settings.config", &bytes)]),
+        false => zipped(&[("3D/3dmodel.model", &bytes)]),
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 4000, ..ProptestConfig::default() })]
 
@@ -103,14 +115,7 @@ proptest! {
         let (format, original) = &originals[which.index(originals.len())];
         let mut bytes = original.clone();
         changes.iter().for_each(|change| apply(&mut bytes, change));
-        // A model alone, or what a slicer says of one, is packed, so that changes reach the reader of the XML.
-        if *format == Format::ThreeMf && !original.starts_with(b"PK") {
-            const MODEL: &[u8] = include_bytes!("../../../fuzz/seeds/three_mf/roles.model");
-            bytes = match original.starts_with(b"<config") {
-                true => zipped(&[("3D/3dmodel.model", MODEL), ("Metadata/model_settings.config", &bytes)]),
-                false => zipped(&[("3D/3dmodel.model", &bytes)]),
-            };
-        }
+        let bytes = packed(*format, original, bytes);
         for format in [Some(*format), None] {
             match read_bytes(&bytes, format, None) {
                 Ok(loaded) => assert_sound(&loaded),
