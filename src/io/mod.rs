@@ -46,6 +46,7 @@ mod loaded;
 mod obj;
 mod off;
 mod paint;
+mod pieces;
 mod ply;
 mod polygon;
 mod reading;

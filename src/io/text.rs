@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use super::colour::Tails;
+use super::pieces::in_pieces;
 use crate::mesh::TriMesh;
 
 /// The lines of a text with their numbers, from 1. Ends of lines may be LF, CR LF or, in a text
@@ -197,35 +198,43 @@ impl<'a> TextOut<'a> {
         }
     }
 
+    /// Writes `count` rows, each by itself on any thread, in their order.
+    pub(super) fn each(&mut self, count: usize, row: impl Fn(usize, &mut TextOut<'_>) + Sync) -> io::Result<()> {
+        self.flush()?;
+        in_pieces(count, self.out, |rows, bytes| {
+            let mut nowhere = io::sink();
+            let mut text = TextOut { out: &mut nowhere, buffer: std::mem::take(bytes) };
+            rows.for_each(|n| row(n, &mut text));
+            *bytes = text.buffer;
+        })
+    }
+
     /// A line for each position, then a line for each triangle: 3 and its vertices, from 0. Each ends in its tail; `more` follows that of a
     /// triangle.
     pub(super) fn rows(
         &mut self,
         mesh: &TriMesh,
         tails: &Tails<'_>,
-        more: impl Fn(usize, &mut Self),
+        more: impl Fn(usize, &mut TextOut<'_>) + Sync,
     ) -> io::Result<()> {
-        for (vertex, p) in mesh.positions.iter().enumerate() {
-            for (k, x) in p.to_array().into_iter().enumerate() {
-                self.text(if k == 0 { "" } else { " " });
-                self.number(x);
+        self.each(mesh.positions.len(), |vertex, text| {
+            for (k, x) in mesh.positions[vertex].to_array().into_iter().enumerate() {
+                text.text(if k == 0 { "" } else { " " });
+                text.number(x);
             }
-            self.channels(tails.vertex(vertex));
-            self.text("\n");
-            self.pass_on()?;
-        }
-        for (face, t) in mesh.triangles.iter().enumerate() {
-            self.text("3");
-            for v in t {
-                self.text(" ");
-                self.integer(u64::from(*v));
+            text.channels(tails.vertex(vertex));
+            text.text("\n");
+        })?;
+        self.each(mesh.triangles.len(), |face, text| {
+            text.text("3");
+            for v in mesh.triangles[face] {
+                text.text(" ");
+                text.integer(u64::from(v));
             }
-            self.channels(tails.face(face));
-            more(face, self);
-            self.text("\n");
-            self.pass_on()?;
-        }
-        Ok(())
+            text.channels(tails.face(face));
+            more(face, text);
+            text.text("\n");
+        })
     }
 
     /// Passes the text on when there is enough of it. To be called now and then, and by

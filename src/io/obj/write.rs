@@ -24,9 +24,9 @@ pub(in crate::io) fn write(
         text.text(&format!("mtllib {}\n", library_name(path)));
     }
     let colours = paint.colours.map(|colours| vertex_means(mesh, colours));
-    for (vertex, p) in mesh.positions.iter().enumerate() {
+    text.each(mesh.positions.len(), |vertex, text| {
         text.text("v");
-        for x in p.to_array() {
+        for x in mesh.positions[vertex].to_array() {
             text.text(" ");
             text.number(x);
         }
@@ -37,24 +37,21 @@ pub(in crate::io) fn write(
             }
         }
         text.text("\n");
-        text.pass_on()?;
-    }
+    })?;
     let corners = texture.map(|texture| write_coordinates(texture, &mut text)).transpose()?.unwrap_or_default();
     let names = texture.map(TextureMap::material_names).unwrap_or_default();
-    let mut current = None;
-    let mut parts = parts.iter().peekable();
-    for (triangle, t) in mesh.triangles.iter().enumerate() {
-        if let Some(part) = parts.next_if(|part| part.triangles.start == triangle) {
-            text.text(&format!("o {}\n", part.name));
+    let material_of = |triangle: usize| texture.and_then(|texture| texture.material_of[triangle]);
+    text.each(mesh.triangles.len(), |triangle, text| {
+        if let Ok(part) = parts.binary_search_by_key(&triangle, |part| part.triangles.start) {
+            text.text(&format!("o {}\n", parts[part].name));
         }
-        let material = texture.and_then(|texture| texture.material_of[triangle]);
-        if material != current {
+        let material = material_of(triangle);
+        if material != triangle.checked_sub(1).and_then(material_of) {
             let name = material.and_then(|material| names.get(material as usize)).map_or("none", String::as_str);
             text.text(&format!("usemtl {name}\n"));
-            current = material;
         }
         text.text("f");
-        for (k, v) in t.iter().enumerate() {
+        for (k, v) in mesh.triangles[triangle].iter().enumerate() {
             text.text(" ");
             text.integer(u64::from(*v) + 1);
             if let Some(corners) = corners.get(triangle).copied().flatten() {
@@ -63,8 +60,7 @@ pub(in crate::io) fn write(
             }
         }
         text.text("\n");
-        text.pass_on()?;
-    }
+    })?;
     Ok(text.finish()?)
 }
 

@@ -4,6 +4,7 @@ use std::io::Write;
 
 use super::super::colour::{Colours, Tails};
 use super::super::error::WriteError;
+use super::super::pieces::in_pieces;
 use super::super::text::TextOut;
 use super::super::{Paint, TextureMap, shown_colours};
 use crate::mesh::TriMesh;
@@ -136,35 +137,28 @@ pub(in crate::io) fn write_binary(mesh: &TriMesh, paint: &Paint<'_>, out: &mut d
 pub(super) fn write_binary_rows(
     mesh: &TriMesh,
     single: bool,
-    extra: impl Fn(Row, &mut Vec<u8>),
+    extra: impl Fn(Row, &mut Vec<u8>) + Sync,
     out: &mut dyn Write,
 ) -> Result<(), WriteError> {
-    const CHUNK: usize = 1 << 16;
-    let mut chunk = Vec::with_capacity(CHUNK + 64);
-    for (vertex, p) in mesh.positions.iter().enumerate() {
-        for x in p.to_array() {
-            if single {
-                chunk.extend_from_slice(&(x as f32).to_le_bytes());
-            } else {
-                chunk.extend_from_slice(&x.to_le_bytes());
+    in_pieces(mesh.positions.len(), out, |rows, bytes| {
+        for vertex in rows {
+            for x in mesh.positions[vertex].to_array() {
+                if single {
+                    bytes.extend_from_slice(&(x as f32).to_le_bytes());
+                } else {
+                    bytes.extend_from_slice(&x.to_le_bytes());
+                }
             }
+            extra(Row::Vertex(vertex), bytes);
         }
-        extra(Row::Vertex(vertex), &mut chunk);
-        if chunk.len() >= CHUNK {
-            out.write_all(&chunk)?;
-            chunk.clear();
+    })?;
+    Ok(in_pieces(mesh.triangles.len(), out, |rows, bytes| {
+        for face in rows {
+            bytes.push(3);
+            mesh.triangles[face].iter().for_each(|v| bytes.extend_from_slice(&v.to_le_bytes()));
+            extra(Row::Face(face), bytes);
         }
-    }
-    for (face, t) in mesh.triangles.iter().enumerate() {
-        chunk.push(3);
-        t.iter().for_each(|v| chunk.extend_from_slice(&v.to_le_bytes()));
-        extra(Row::Face(face), &mut chunk);
-        if chunk.len() >= CHUNK {
-            out.write_all(&chunk)?;
-            chunk.clear();
-        }
-    }
-    Ok(out.write_all(&chunk)?)
+    })?)
 }
 
 /// Writes ASCII PLY. The numbers are those of the mesh in full, so a reader that takes them as

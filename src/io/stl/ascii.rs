@@ -155,7 +155,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Soup, FileError> {
 pub(in crate::io) fn write(mesh: &TriMesh, out: &mut dyn Write) -> Result<(), WriteError> {
     let mut text = TextOut::new(out);
     text.text("solid meshwright\n");
-    for triangle in 0..mesh.triangles.len() {
+    text.each(mesh.triangles.len(), |triangle, text| {
         text.text("facet normal");
         // Nothing is computed from a normal, so it is written as short as an `f32` can be.
         for x in normal(mesh, triangle).as_vec3().to_array() {
@@ -172,8 +172,7 @@ pub(in crate::io) fn write(mesh: &TriMesh, out: &mut dyn Write) -> Result<(), Wr
             text.text("\n");
         }
         text.text("endloop\nendfacet\n");
-        text.pass_on()?;
-    }
+    })?;
     text.text("endsolid meshwright\n");
     Ok(text.finish()?)
 }

@@ -5,6 +5,7 @@ use std::io::Write;
 use glam::Vec3;
 
 use super::super::error::{FileError, FileProblem, WriteError, WriteProblem};
+use super::super::pieces::in_pieces;
 use super::super::soup::{Soup, too_many_vertices};
 use super::super::text::counted;
 use super::normal;
@@ -112,18 +113,14 @@ pub(in crate::io) fn write(mesh: &TriMesh, out: &mut dyn Write) -> Result<(), Wr
     header[..title.len()].copy_from_slice(title);
     out.write_all(&header)?;
     out.write_all(&count.to_le_bytes())?;
-    let mut chunk = Vec::with_capacity(1024 * FACET);
-    for triangle in 0..mesh.triangles.len() {
-        for p in [normal(mesh, triangle)].into_iter().chain(mesh.corners(triangle)) {
-            for x in p.as_vec3().to_array() {
-                chunk.extend_from_slice(&x.to_le_bytes());
+    Ok(in_pieces(mesh.triangles.len(), out, |rows, bytes| {
+        for triangle in rows {
+            for p in [normal(mesh, triangle)].into_iter().chain(mesh.corners(triangle)) {
+                for x in p.as_vec3().to_array() {
+                    bytes.extend_from_slice(&x.to_le_bytes());
+                }
             }
+            bytes.extend_from_slice(&[0, 0]);
         }
-        chunk.extend_from_slice(&[0, 0]);
-        if chunk.len() >= 1024 * FACET {
-            out.write_all(&chunk)?;
-            chunk.clear();
-        }
-    }
-    Ok(out.write_all(&chunk)?)
+    })?)
 }

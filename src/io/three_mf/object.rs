@@ -104,12 +104,13 @@ impl<'a> Written<'a> {
 
     /// Writes the triangles, whose vertices are counted from `first`; `prefix`: what stands before the names of elements.
     pub(super) fn write_triangles(&self, first: usize, prefix: &str, text: &mut TextOut<'_>) -> std::io::Result<()> {
-        for (triangle, t) in self.object.mesh.triangles.iter().enumerate() {
+        let triangles = &self.object.mesh.triangles;
+        text.each(triangles.len(), |triangle, text| {
             text.text("<");
             text.text(prefix);
-            for (start, v) in ["triangle v1=\"", "\" v2=\"", "\" v3=\""].into_iter().zip(t) {
+            for (start, v) in ["triangle v1=\"", "\" v2=\"", "\" v3=\""].into_iter().zip(triangles[triangle]) {
                 text.text(start);
-                text.integer(first as u64 + u64::from(*v));
+                text.integer(first as u64 + u64::from(v));
             }
             match (self.looks[triangle], &self.palette) {
                 (Look::Inherited, _) | (Look::Colours, None) => {}
@@ -118,9 +119,7 @@ impl<'a> Written<'a> {
                 (Look::Picture(image), _) => self.write_places(triangle, image, text),
             }
             text.text("\"/>\n");
-            text.pass_on()?;
-        }
-        Ok(())
+        })
     }
 
     fn write_places(&self, triangle: usize, image: u32, text: &mut TextOut<'_>) {

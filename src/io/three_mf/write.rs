@@ -103,34 +103,32 @@ fn write_model(
     text.text("><mesh>\n<vertices>\n");
     write_vertices(mesh, "", &mut text)?;
     text.text("</vertices>\n<triangles>\n");
-    for (triangle, t) in mesh.triangles.iter().enumerate() {
-        for (start, v) in ["<triangle v1=\"", "\" v2=\"", "\" v3=\""].into_iter().zip(t) {
+    text.each(mesh.triangles.len(), |triangle, text| {
+        for (start, v) in ["<triangle v1=\"", "\" v2=\"", "\" v3=\""].into_iter().zip(mesh.triangles[triangle]) {
             text.text(start);
-            text.integer(u64::from(*v));
+            text.integer(u64::from(v));
         }
         match (pictures.filter(|_| is_picture(triangle)), &palette) {
-            (Some(pictures), _) => pictures.write_entries(triangle, &mut text),
-            (None, Some(palette)) => palette.write_entries(triangle, &mut text),
+            (Some(pictures), _) => pictures.write_entries(triangle, text),
+            (None, Some(palette)) => palette.write_entries(triangle, text),
             (None, None) => {}
         }
         text.text("\"/>\n");
-        text.pass_on()?;
-    }
+    })?;
     text.text("</triangles>\n</mesh></object></resources>\n<build><item objectid=\"1\"/></build>\n</model>\n");
     text.finish()
 }
 
 /// Writes the vertices; `prefix`: what stands before the names of elements.
 pub(super) fn write_vertices(mesh: &TriMesh, prefix: &str, text: &mut TextOut<'_>) -> std::io::Result<()> {
-    for p in &mesh.positions {
+    text.each(mesh.positions.len(), |vertex, text| {
         text.text("<");
         text.text(prefix);
-        for (start, x) in ["vertex x=\"", "\" y=\"", "\" z=\""].into_iter().zip(p.to_array()) {
+        let places = mesh.positions[vertex].to_array();
+        for (start, x) in ["vertex x=\"", "\" y=\"", "\" z=\""].into_iter().zip(places) {
             text.text(start);
             text.number(x);
         }
         text.text("\"/>\n");
-        text.pass_on()?;
-    }
-    Ok(())
+    })
 }
