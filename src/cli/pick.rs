@@ -27,10 +27,9 @@ impl PickArgs {
         }
         let mut picked = BTreeSet::new();
         for asked in &self.part {
-            let before = picked.len();
-            let named = (0..names.len()).filter(|&n| !asked.is_empty() && names[n] == asked);
-            picked.extend(named);
-            if picked.len() > before || names.contains(&asked.as_str()) {
+            let named: Vec<usize> = (0..names.len()).filter(|&n| !asked.is_empty() && names[n] == asked).collect();
+            if !named.is_empty() {
+                picked.extend(named);
                 continue;
             }
             match asked.parse::<usize>() {
