@@ -12,7 +12,8 @@ const OTHERS: &str = include_str!("licenses.txt");
 /// Prints all of them.
 pub fn run() -> Exit {
     let [mit, apache] = OWN;
-    let text = format!("meshwright may be used under either of two licences, MIT or Apache-2.0.\n\n{mit}\n{apache}\n{OTHERS}");
+    let text =
+        format!("meshwright may be used under either of two licences, MIT or Apache-2.0.\n\n{mit}\n{apache}\n{OTHERS}");
     match streams::write_stream(text.as_bytes()) {
         Ok(()) => Exit::Done,
         Err(failure) => {

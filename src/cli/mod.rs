@@ -45,6 +45,7 @@ mod misuse;
 mod morphology;
 mod negative;
 mod output;
+mod page;
 mod paint;
 mod preset;
 mod progress_bar;
