@@ -1,5 +1,6 @@
 //! The command line: one file a verb. Only this folder prints and knows exit codes.
 
+mod again;
 mod args;
 mod backend;
 mod base;
@@ -75,6 +76,7 @@ mod volume;
 mod weights;
 pub mod within;
 mod words;
+mod written;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -111,7 +113,7 @@ pub fn main() -> ExitCode {
         }
     };
     // The others never load a graphics driver.
-    if !matches!(cli.verb, Verb::Inspect(_) | Verb::Compare(_) | Verb::Convert(_) | Verb::Render(_)) {
+    if !matches!(cli.verb, Verb::Inspect(_) | Verb::Compare(_) | Verb::Convert(_) | Verb::Render(_) | Verb::Report(_)) {
         machine::quiet_drivers();
     }
     let no_bug = Arc::new(AtomicBool::new(true));
@@ -210,6 +212,12 @@ fn dispatch(verb: &Verb, host: &Host) -> Exit {
             let made = made(Some(&args.output), args.force).into_iter().collect();
             let job = Job { inputs, made, ..Job::new("render", &args.common) };
             run(host, job, |session, report| render::run(args, session, report))
+        }
+        Verb::Report(args) => {
+            let page = args.page();
+            let made = Made::side("-o", Some(&page)).into_iter().collect();
+            let job = Job { inputs: vec![&args.input], made, ..Job::new("report", &args.common) };
+            run(host, job, |session, report| again::run(args, session, report))
         }
         Verb::Licenses => licenses::run(),
         Verb::Schema => schema::run(),

@@ -15,7 +15,7 @@ use super::input::{self, Input};
 use super::length::{Scale, Simplify};
 use super::map::{self, Map};
 use super::output::{in_memory, write_verified};
-use super::page::SolidSeen;
+use super::page::{Origin, SolidSeen};
 use super::paint::{self, Arranged};
 use super::report::RunReport;
 use super::result::RunResult;
@@ -330,7 +330,8 @@ fn show(
                 (mesh, sources, kinds)
             }
         };
-        page::of_solid(&SolidSeen { inputs, operands, mesh, sources, kinds, canal_of }, report, session)
+        let origin = Origin::Known(sources, kinds);
+        page::of_solid(&SolidSeen { inputs, operands, mesh, origin, canal_of }, report, session)
     };
     session.show(report, look)
 }

@@ -179,12 +179,14 @@ fn gathered(mesh: &TriMesh, kind: DefectKind, items: Vec<Item>) -> Vec<Cluster> 
 
 fn cluster<'a>(mesh: &TriMesh, kind: DefectKind, items: impl Iterator<Item = &'a Item>) -> Option<Cluster> {
     let (mut triangles, mut points, mut count, mut length) = (Vec::new(), Vec::new(), 0, 0.0);
+    let mut rim: Vec<[DVec3; 2]> = Vec::new();
     for item in items {
         count += 1;
         triangles.extend(&item.of);
         let at: Vec<DVec3> = item.at.iter().map(|&v| mesh.positions[v as usize]).collect();
         if let &[a, b] = at.as_slice() {
             length += a.distance(b);
+            rim.extend(item.of.first().map(|&t| along(mesh.corners(t as usize), [a, b])));
         }
         points.extend(at);
     }
@@ -195,12 +197,22 @@ fn cluster<'a>(mesh: &TriMesh, kind: DefectKind, items: impl Iterator<Item = &'a
         let [a, b, c] = mesh.corners(t as usize);
         (b - a).cross(c - a).normalize_or_zero()
     };
-    let place = Place {
-        at: (bounds.min + bounds.max) / 2.0,
-        size: bounds.diagonal(),
-        from: triangles.iter().map(normal).sum::<DVec3>().normalize_or_zero(),
+    let at = (bounds.min + bounds.max) / 2.0;
+    // Where a rim has a plane, the missing surface faces that way; elsewhere what is beside the defect is seen best from its front.
+    let swept: DVec3 = rim.iter().map(|[a, b]| (*a - at).cross(*b - at)).sum();
+    let missing = if kind == DefectKind::OpenEdges { -swept } else { DVec3::ZERO };
+    let from = match missing.length() > 0.02 * length * length {
+        true => missing.normalize_or_zero(),
+        false => triangles.iter().map(normal).sum::<DVec3>().normalize_or_zero(),
     };
+    let place = Place { at, size: bounds.diagonal(), from };
     Some(Cluster { kind, count, triangles, length, place })
+}
+
+/// The ends of an edge in the order in which a triangle has them.
+fn along(corners: [DVec3; 3], [a, b]: [DVec3; 2]) -> [DVec3; 2] {
+    let runs_so = (0..3).any(|k| corners[k] == a && corners[(k + 1) % 3] == b);
+    if runs_so { [a, b] } else { [b, a] }
 }
 
 #[cfg(test)]
@@ -216,6 +228,9 @@ mod tests {
         let list = clusters(&mesh, &found, false);
         assert_eq!(list.iter().map(|cluster| cluster.count).sum::<usize>(), found.open_edges.len());
         assert!(list.iter().all(|cluster| cluster.kind == DefectKind::OpenEdges && cluster.length > 0.0));
+        // The missing side is seen from outside.
+        let middle = mesh.bounds().map_or(DVec3::ZERO, |bounds| (bounds.min + bounds.max) / 2.0);
+        assert!(list.iter().all(|cluster| cluster.place.from.dot(cluster.place.at - middle) > 0.0), "{list:?}");
         assert!(list.iter().all(|cluster| !cluster.triangles.is_empty() && cluster.place.size > 0.0), "{list:?}");
     }
 }

@@ -54,6 +54,8 @@ pub struct Page {
     pub first: Vec<Section>,
     /// The meshes of the view: none, one or two.
     pub panes: Vec<Pane>,
+    /// The heading of the view.
+    pub view_title: String,
     /// The name of the layer that is shown at first.
     pub shown_first: String,
     /// What stands after the view.
@@ -120,7 +122,7 @@ impl Page {
         format!(
             "<section id=\"view\"><h2>{}</h2>\n<div id=\"stage\" hidden></div>\n<div id=\"pictures\">{pictures}</div>\n\
              <p class=\"note\" id=\"still\">With scripts and WebGL these are meshes that can be turned.</p>{}</section>\n",
-            if self.panes.len() > 1 { "Before and after" } else { "The mesh" },
+            html(&self.view_title),
             self.notes()
         )
     }

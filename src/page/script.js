@@ -124,10 +124,15 @@ const ramp = (stops, share) => {
 };
 const PLAIN = [176, 190, 205], NONE = [128, 128, 128];
 
+// Some of the vertices, by which the first view is chosen.
+const some = [];
 const panes = [];
 for (const data of given.panes) {
   const pane = { data, low: inside(data.min), size: data.max.map((x, k) => (x - data.min[k]) / diagonal), lines: [], colours: {} };
   const positions = await numbers(data.positions, 3, 2);
+  for (let n = 0, by = Math.ceil(data.vertices / 1500) || 1; n < data.vertices; n += by) {
+    some.push(pane.low.map((x, k) => x + positions[3 * n + k] / 65535 * pane.size[k]));
+  }
   pane.corners = await numbers(data.corners, 1, 4);
   const spread = new Uint16Array(4 * pane.corners.length);
   pane.corners.forEach((v, n) => { for (let k = 0; k < 3; k++) spread[4 * n + k] = positions[3 * v + k]; });
@@ -312,11 +317,15 @@ const legend = document.createElement('div');
 function explain() {
   legend.replaceChildren();
   const classes = panes.flatMap(pane => pane.data.classes).filter(c => c.name === state.colour);
-  const entries = new Map(classes.flatMap(c => c.legend).map(([colour, text]) => [text, colour]));
-  for (const [text, colour] of entries) {
-    const line = make('div', legend, { className: 'row' });
+  const entries = new Map();
+  for (const [colour, text, count] of classes.flatMap(c => c.legend)) {
+    if (count) entries.set(text, [colour, Math.max(count, (entries.get(text) || [])[1] || 0)]);
+  }
+  for (const [text, [colour, count]] of entries) {
+    const line = make('div', legend, { className: 'entry' });
     make('span', line, { className: 'swatch' }).style.background = colour;
-    make('span', line, { textContent: text }).style.flex = '1';
+    make('span', line, { textContent: text });
+    make('span', line, { className: 'count', textContent: count.toLocaleString('en') });
   }
   const values = panes.flatMap(pane => pane.data.values).find(v => v.name === state.colour);
   if (values) {
@@ -366,8 +375,17 @@ slider.oninput = () => { state.cut = Number(slider.value); draw(); };
 make('button', make('div', looks, { className: 'row' }), { type: 'button', textContent: 'Whole view', onclick: () => { ring = null; chosen(null); fly({ ...start }); } });
 make('div', looks, { className: 'note', textContent: 'Drag turns, wheel or pinch zooms, right button or two fingers move. Inner sides are rust red.' });
 
-// Where the camera goes.
-const start = { yaw: camera.yaw, pitch: camera.pitch, distance: 0.52 / Math.sin(FIELD / 2), target: [0, 0, 0] };
+// Where the camera goes: at first so near that all meshes are seen whole.
+function whole() {
+  const { back, right, up } = axes(), [{ w, h }] = areas(), aspect = w / h || 1, f = 1 / Math.tan(FIELD / 2) * Math.min(1, aspect) / 0.92;
+  const ends = axis => { const along = some.map(p => dot(p, axis)); return [Math.min(...along), Math.max(...along)]; };
+  const middleOf = axis => { const [a, b] = ends(axis); return (a + b) / 2; };
+  const target = add(right.map(x => x * middleOf(right)), up, middleOf(up));
+  const distance = Math.max(...some.map(p => add(p, target, -1)).map(p => dot(p, back) + f * Math.max(Math.abs(dot(p, right)) / aspect, Math.abs(dot(p, up)))));
+  return { ...camera, target, distance: distance || 1 };
+}
+stage.hidden = false;
+const start = whole();
 Object.assign(camera, start);
 let flight = 0;
 function fly(to) {
@@ -438,7 +456,6 @@ canvas.addEventListener('keydown', event => {
   if (done) { event.preventDefault(); flight++; done(); draw(); }
 });
 
-stage.hidden = false;
 document.documentElement.classList.add('live');
 new ResizeObserver(draw).observe(frame);
 explain();

@@ -67,7 +67,7 @@ pub struct Place {
 }
 
 /// As many rows of a table are printed.
-const PRINTED: usize = 14;
+const PRINTED: usize = 9;
 
 impl Section {
     pub(super) fn html(&self) -> String {

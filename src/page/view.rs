@@ -81,7 +81,9 @@ fn classes_data(classes: &Classes, less: Option<&Fewer>) -> Value {
         None => Cow::Borrowed(&classes.of),
         Some(less) => less.triangles.iter().map(|&t| classes.of.get(t as usize).copied().unwrap_or(0)).collect(),
     };
-    let legend: Vec<Value> = classes.legend.iter().map(|(colour, text)| json!([hex(*colour), text])).collect();
+    let count = |n: usize| classes.of.iter().filter(|&&class| usize::from(class) == n).count();
+    let entry = |(n, (colour, text)): (usize, &([u8; 3], String))| json!([hex(*colour), text, count(n)]);
+    let legend: Vec<Value> = classes.legend.iter().enumerate().map(entry).collect();
     json!({ "name": classes.name, "legend": legend, "data": pack::bytes(&of) })
 }
 

@@ -12,6 +12,7 @@ mod files;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod maps;
+mod page;
 mod readers;
 mod schema;
 mod sdf;

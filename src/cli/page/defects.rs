@@ -2,14 +2,17 @@
 
 use glam::DVec3;
 
-use crate::cli::words::{self, UnitName};
 use crate::cli::holes;
+use crate::cli::words::{self, UnitName};
 use crate::mesh::Bounds;
 use crate::page::{Cluster, DefectKind, Place, Row, Table};
 use crate::pipeline::{HoleReport, Report};
 
 use super::fates::Fates;
 use super::ground::Ground;
+
+/// At most so many places of a kind have a row each.
+const EACH: usize = 8;
 
 /// At most so many rows.
 const MOST: usize = 150;
@@ -21,6 +24,8 @@ pub(super) struct Known<'a> {
     pub pipeline: Option<&'a Report>,
     /// What became of triangles, where something was made.
     pub fates: Option<&'a Fates>,
+    /// Whether something was made.
+    pub made: bool,
     pub unit: UnitName<'a>,
 }
 
@@ -28,14 +33,19 @@ impl Known<'_> {
     /// The table: holes first, then what else is wrong, then what is to be looked at.
     pub(super) fn table(&self) -> Table {
         let mut rows: Vec<Row> = self.holes.iter().map(|hole| self.hole(hole)).collect();
-        let rest = self.ground.clusters.iter().filter(|(input, cluster)| !self.is_told(*input, cluster));
-        rows.extend(rest.map(|(input, cluster)| self.cluster(*input, cluster)));
+        for kind in DefectKind::ALL {
+            let all: Vec<&(usize, Cluster)> =
+                self.ground.clusters.iter().filter(|(input, c)| c.kind == kind && !self.is_told(*input, c)).collect();
+            let (first, rest) = all.split_at(all.len().min(EACH));
+            rows.extend(first.iter().map(|(input, cluster)| self.cluster(*input, cluster)));
+            rows.extend(self.further(kind, rest));
+        }
         rows.extend(self.pipeline.iter().flat_map(|pipeline| self.places(pipeline)));
         let more = rows.len().saturating_sub(MOST);
         rows.truncate(MOST);
-        let last = if self.fates.is_some() { "What became of it" } else { "What repair would do" };
+        let last = if self.made { "What became of it" } else { "What repair would do" };
         let mut head: Vec<String> = ["Defect", "Of", "Around", "Across"].map(String::from).into();
-        match self.fates.is_some() || !self.holes.is_empty() {
+        match self.made || !self.holes.is_empty() {
             true => head.push(last.into()),
             false => rows.iter_mut().for_each(|row| row.cells.truncate(4)),
         }
@@ -50,6 +60,20 @@ impl Known<'_> {
             hole.operand == input && off <= cluster.place.size / 2.0 && same
         };
         cluster.kind == DefectKind::OpenEdges && self.holes.iter().any(near)
+    }
+
+    /// Smaller places of a kind as one row.
+    fn further(&self, kind: DefectKind, rest: &[&(usize, Cluster)]) -> Option<Row> {
+        let count = rest.iter().map(|(_, cluster)| cluster.count).sum();
+        let fates = |fates: &Fates| fates.words_of(rest.iter().map(|(input, c)| (*input, c.triangles.as_slice())));
+        let cells = vec![
+            format!("{}, smaller places", capital(kind.words())),
+            format!("{} at {}", words::count(count), words::plural(rest.len(), "place")),
+            String::new(),
+            String::new(),
+            self.fates.map_or(String::new(), fates),
+        ];
+        (!rest.is_empty()).then_some(Row { cells, place: None })
     }
 
     fn input(&self, input: usize) -> String {
@@ -71,7 +95,7 @@ impl Known<'_> {
             format!("{}, {} long", words::plural(hole.edges, "edge"), words::length(hole.perimeter, self.unit)),
             around(at),
             words::length(hole.diameter, self.unit),
-            match self.fates.is_some() {
+            match self.made {
                 true => format!("closed: {}", holes::closing(hole)).replace("closed: left", "left"),
                 false => holes::closing(hole),
             },
@@ -82,8 +106,6 @@ impl Known<'_> {
     fn cluster(&self, input: usize, cluster: &Cluster) -> Row {
         let (word, words) = (cluster.kind.word(), cluster.kind.words());
         let name = if cluster.count == 1 { word } else { words };
-        let mut capital = name.to_string();
-        capital[..1].make_ascii_uppercase();
         let length = match cluster.length > 0.0 {
             true => format!(", {} long", words::length(cluster.length, self.unit)),
             false => String::new(),
@@ -94,7 +116,7 @@ impl Known<'_> {
             _ => fate,
         };
         let cells = vec![
-            format!("{capital}{}", self.input(input)),
+            format!("{}{}", capital(name), self.input(input)),
             format!("{}{length}", words::count(cluster.count)),
             around(cluster.place.at),
             words::length(cluster.place.size, self.unit),
@@ -157,6 +179,14 @@ impl Known<'_> {
         }
         rows
     }
+}
+
+fn capital(name: &str) -> String {
+    let mut name = name.to_string();
+    if let Some(first) = name.get_mut(..1) {
+        first.make_ascii_uppercase();
+    }
+    name
 }
 
 fn around(at: DVec3) -> String {

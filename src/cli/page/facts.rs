@@ -5,6 +5,7 @@ use crate::cli::report::RunReport;
 use crate::cli::result::RunResult;
 use crate::cli::words::{self, UnitName};
 use crate::cli::{done, doubts, dropped, exact};
+use crate::io::Format;
 use crate::mesh::Validity;
 use crate::page::{Part, Row, Section, Table};
 
@@ -39,8 +40,14 @@ pub(super) fn first(report: &RunReport, unit: UnitName<'_>) -> Vec<Section> {
     vec![section("numbers", "In numbers", parts), section("notes", "Notes", notes)]
 }
 
+/// The text with a large letter at its beginning and a full stop at its end; names of formats are written large.
 fn capital(text: &str) -> String {
-    let mut letters = text.trim_end_matches('.').chars();
+    let text = text.trim_end_matches('.');
+    let word: String = text.chars().take_while(|letter| letter.is_ascii_alphanumeric()).collect();
+    if word.parse::<Format>().is_ok() {
+        return format!("{}{}.", word.to_uppercase(), &text[word.len()..]);
+    }
+    let mut letters = text.chars();
     let first: String = letters.next().map_or(String::new(), |first| first.to_uppercase().collect());
     first + letters.as_str() + "."
 }
@@ -58,7 +65,7 @@ fn measures(columns: &[(String, &Validity)], unit: UnitName<'_>) -> Table {
         ("Repeated triangles", |v, _| words::count(v.duplicate_triangles)),
         ("Triangles without area", |v, _| words::count(v.degenerate_triangles)),
         ("Surfaces", |v, _| words::count(v.bodies)),
-        ("Tunnels", |v, _| v.genus.map_or("not closed".into(), |genus| genus.to_string())),
+        ("Tunnels", |v, _| v.genus.map_or("not closed".into(), |genus| words::count(genus.max(0) as usize))),
         ("Area", |v, unit| words::area(v.area, unit)),
         ("Volume", |v, unit| words::volume(v.volume, unit)),
     ];

@@ -25,19 +25,29 @@ impl Fates {
 
     /// What became of some triangles of an operand, in words.
     pub(super) fn words(&self, operand: usize, triangles: &[u32]) -> String {
-        let Some(of) = self.of.get(operand) else { return String::new() };
-        let count =
-            |fate: Option<TriangleKind>| triangles.iter().filter(|&&t| of.get(t as usize) == Some(&fate)).count();
-        let counted = TriangleKind::BY_CHANGE.map(|kind| (count(Some(kind)), kind.word()));
-        let gone = (count(None), "left out or merged with others");
-        let parts: Vec<(usize, &str)> = counted.into_iter().chain([gone]).filter(|(n, _)| *n > 0).collect();
+        self.words_of(std::iter::once((operand, triangles)))
+    }
+
+    /// The same of triangles of several.
+    pub(super) fn words_of<'a>(&self, places: impl Iterator<Item = (usize, &'a [u32])>) -> String {
+        let mut counts = [0; TriangleKind::BY_CHANGE.len() + 1];
+        for (operand, triangles) in places {
+            let Some(of) = self.of.get(operand) else { continue };
+            for fate in triangles.iter().filter_map(|&t| of.get(t as usize)) {
+                let place = fate.and_then(|fate| TriangleKind::BY_CHANGE.iter().position(|kind| *kind == fate));
+                counts[place.unwrap_or(TriangleKind::BY_CHANGE.len())] += 1;
+            }
+        }
+        let names =
+            TriangleKind::BY_CHANGE.map(TriangleKind::word).into_iter().chain(["left out or merged with others"]);
+        let parts: Vec<(usize, &str)> = counts.into_iter().zip(names).filter(|(n, _)| *n > 0).collect();
         match parts.as_slice() {
             [] => String::new(),
             &[(1, what)] => format!("its triangle: {what}"),
             &[(n, what)] => format!("all {} triangles: {what}", words::count(n)),
             parts => {
                 let each: Vec<String> = parts.iter().map(|(n, what)| format!("{} {what}", words::count(*n))).collect();
-                format!("of {}: {}", words::plural(triangles.len(), "triangle"), words::list(&each))
+                format!("of {}: {}", words::plural(counts.iter().sum(), "triangle"), words::list(&each))
             }
         }
     }

@@ -9,7 +9,7 @@ mod seen;
 mod verdict;
 
 pub use scene::{Scene, of_comparison, of_decimation, of_inspection, of_solid};
-pub use seen::SolidSeen;
+pub use seen::{Origin, SolidSeen};
 
 use super::exit::Failure;
 use super::report::RunReport;
@@ -25,6 +25,11 @@ pub fn html(report: &RunReport, session: &Session) -> Result<String, Failure> {
     Ok(page(report, json, scene, session.command().as_deref()).html())
 }
 
+/// The page of a report that was written before, with what is to be said of its files.
+pub fn html_of_written(report: &RunReport, json: serde_json::Value, scene: Option<Scene>) -> String {
+    page(report, json, scene.unwrap_or_default(), None).html()
+}
+
 /// The unit of a run.
 fn unit_of(report: &RunReport) -> UnitName<'_> {
     report.options.get("unit").and_then(|unit| unit.as_str())
@@ -34,7 +39,7 @@ fn page(report: &RunReport, json: serde_json::Value, scene: Scene, command: Opti
     let unit = unit_of(report);
     let (mood, verdict) = verdict::verdict(report, unit);
     let names: Vec<&str> = report.inputs.iter().map(|input| file_name(&input.path)).collect();
-    let mut sections = Vec::new();
+    let mut sections = facts::done(report, unit);
     if let Some(table) = scene.defects {
         let text = match table.rows.is_empty() {
             true => vec![Part::Text("None was found.".into())],
@@ -44,12 +49,11 @@ fn page(report: &RunReport, json: serde_json::Value, scene: Scene, command: Opti
     }
     let mut first = facts::first(report, unit);
     first.retain(|section| !section.parts.is_empty());
-    sections.extend(facts::done(report, unit));
     let charts: Vec<Part> = scene.charts.into_iter().map(Part::Chart).collect();
     if !charts.is_empty() {
         sections.push(Section { id: "charts", title: "Distances and thickness".into(), parts: charts, folded: false });
     }
-    sections.extend(scene.bodies.map(|table| facts::bodies(table)));
+    sections.extend(scene.bodies.map(facts::bodies));
     sections.push(facts::time(report));
     sections.push(facts::reproduce(report, command));
     sections.push(facts::options(report));
@@ -60,6 +64,7 @@ fn page(report: &RunReport, json: serde_json::Value, scene: Scene, command: Opti
         verdict,
         first,
         panes: scene.panes,
+        view_title: scene.view_title,
         shown_first: scene.first,
         sections,
         report: json,

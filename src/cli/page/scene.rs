@@ -1,11 +1,13 @@
 //! What a page shows of the meshes of a run.
 
 use glam::DVec3;
+use rustc_hash::FxHashSet;
 
 use super::defects::Known;
 use super::fates::Fates;
 use super::ground::{Ground, INPUT, input_class};
-use super::seen::SolidSeen;
+use super::seen::{Origin, SolidSeen};
+use crate::cli::entries::InputEntry;
 use crate::cli::exit::Failure;
 use crate::cli::input::Input;
 use crate::cli::map;
@@ -15,7 +17,7 @@ use crate::cli::session::Session;
 use crate::cli::words::{self, UnitName};
 use crate::compare::deviation_map;
 use crate::io::Colours;
-use crate::mesh::TriMesh;
+use crate::mesh::{TriMesh, Validity};
 use crate::page::{self, Classes, Histogram, Lines, Marks, Pane, Row, Table, Values};
 use crate::picture::{Painted, RenderError, RenderOptions, render};
 use crate::pipeline::{HoleReport, Report, TriangleKind, TriangleSource};
@@ -25,6 +27,7 @@ use crate::progress::Progress;
 #[derive(Default)]
 pub struct Scene {
     pub(super) panes: Vec<Pane>,
+    pub(super) view_title: String,
     pub(super) first: String,
     pub(super) defects: Option<Table>,
     pub(super) defects_title: String,
@@ -35,6 +38,7 @@ pub struct Scene {
 
 const WHAT_IT_IS: &str = "What each triangle is";
 const DISTANCE: &str = "Distance from the other";
+const CANALS: &str = "Canals";
 const THICKNESS: &str = "Thickness of walls";
 const CHOOSE: &str = "Choosing a row shows the place in the view.";
 
@@ -46,14 +50,73 @@ pub fn of_solid(seen: &SolidSeen<'_>, report: &RunReport, session: &Session) -> 
     let progress = &session.progress;
     let unit = super::unit_of(report);
     let ground = Ground::new(seen.inputs, progress)?;
-    let counts: Vec<usize> = seen.operands.iter().map(|operand| operand.mesh.triangles.len()).collect();
-    let fates = Fates::new(&counts, &seen.sources, &seen.kinds);
     let pipeline = report.pipeline();
     let holes = pipeline.map_or(&[][..], |pipeline| &pipeline.holes);
-    let known = Known { ground: &ground, holes, pipeline, fates: Some(&fates), unit };
     let mut before = before_pane(&ground, holes, "Before", progress)?;
     let mut after = Pane { title: "After".into(), mesh: seen.mesh.clone(), ..Pane::default() };
-    after.classes.push(kinds_layer(&seen.kinds));
+    let fates = origin_layers(seen, &ground, &mut before, &mut after, progress)?;
+    if let Some(pipeline) = pipeline {
+        let boxes = regions(pipeline);
+        before.lines.extend(boxes.iter().cloned());
+        after.lines.extend(boxes);
+        after.marks.extend(hole_marks(holes));
+        after.marks.extend(canal_marks(pipeline));
+    }
+    let is_closed = |input: &InputEntry| input.validity.as_ref().is_some_and(Validity::is_oriented_manifold);
+    let sided = seen.inputs.len() == 1 && report.inputs.iter().all(is_closed);
+    let mut charts = distances(&mut before, &mut after, sided, ["input", "result"], unit, progress)?;
+    // In a result with holes left open a ray may find no other side.
+    if pipeline.is_some_and(|pipeline| triangles(pipeline) == seen.mesh.triangles.len()) {
+        charts.extend(thickness(&mut after, unit, progress)?);
+    }
+    let known = Known { ground: &ground, holes, pipeline, fates: fates.as_ref(), made: true, unit };
+    let mut scene = Scene {
+        charts,
+        bodies: bodies(seen.mesh, unit, progress)?,
+        defects: Some(known.table()),
+        defects_title: "Defects, and what became of each".into(),
+        defects_text: CHOOSE.into(),
+        view_title: "Before and after".into(),
+        first: if after.classes.iter().any(|classes| classes.name == CANALS) { CANALS } else { WHAT_IT_IS }.into(),
+        panes: Vec::new(),
+    };
+    // A list of canals leaves the mesh as it is.
+    let canals = pipeline.and_then(|pipeline| pipeline.canals.as_ref());
+    scene.panes = match canals.filter(|canals| canals.removed.is_empty()) {
+        Some(_) => {
+            (scene.view_title, after.title, after.caption) = ("The canals".into(), "The solid".into(), String::new());
+            vec![after]
+        }
+        None => vec![before, after],
+    };
+    Ok(scene)
+}
+
+fn triangles(pipeline: &Report) -> usize {
+    TriangleKind::ALL.into_iter().map(|kind| pipeline.triangles.count(kind)).sum()
+}
+
+/// Lays over both where the triangles come from, and draws the result so.
+fn origin_layers(
+    seen: &SolidSeen<'_>,
+    ground: &Ground,
+    before: &mut Pane,
+    after: &mut Pane,
+    progress: &Progress,
+) -> Result<Option<Fates>, Failure> {
+    let Origin::Known(sources, kinds) = &seen.origin else {
+        let layer = kept_layer(seen.mesh, &ground.mesh);
+        let colour = |&class: &u8| {
+            let [r, g, b] = layer.legend[usize::from(class)].0;
+            [r, g, b, 255]
+        };
+        after.picture =
+            picture(seen.mesh, Some(Colours::Faces(layer.of.iter().map(colour).collect())), false, progress)?;
+        after.caption = "made: light what is kept, orange what is not in the input".into();
+        after.classes.push(layer);
+        return Ok(None);
+    };
+    after.classes.push(kinds_layer(kinds));
     after.classes.extend(canal_layer(seen.canal_of));
     if let Some(classes) = ground.by_input() {
         let class = |source: &TriangleSource| match *source {
@@ -62,39 +125,31 @@ pub fn of_solid(seen: &SolidSeen<'_>, report: &RunReport, session: &Session) -> 
             }
             _ => 0,
         };
-        after.classes.push(Classes {
-            name: INPUT.into(),
-            of: seen.sources.iter().map(class).collect(),
-            legend: ground.input_legend(),
-        });
+        let of = sources.iter().map(class).collect();
+        after.classes.push(Classes { name: INPUT.into(), of, legend: ground.input_legend() });
         before.classes.push(classes);
     }
-    if let Some(pipeline) = pipeline {
-        let boxes = regions(pipeline);
-        before.lines.extend(boxes.iter().cloned());
-        after.lines.extend(boxes);
-        after.marks.extend(hole_marks(holes));
-        after.marks.extend(canal_marks(pipeline));
-    }
-    let closed = report.inputs.iter().all(|input| input.validity.as_ref().is_some_and(|v| v.is_oriented_manifold()));
-    let mut scene = Scene { first: WHAT_IT_IS.into(), ..Scene::default() };
-    let sided = closed && seen.inputs.len() == 1;
-    scene.charts = distances(&mut before, &mut after, sided, ["input", "result"], unit, progress)?;
-    let result_closed = pipeline.is_some_and(|p| {
-        p.triangles.kept + p.triangles.cut + p.triangles.rebuilt + p.triangles.made_up == seen.mesh.triangles.len()
-    });
-    if result_closed {
-        scene.charts.extend(thickness(&mut after, unit, progress)?);
-    }
-    after.picture = picture(&after.mesh, Some(map::colours(&seen.kinds)), false, progress)?;
+    after.picture = picture(seen.mesh, Some(map::colours(kinds)), false, progress)?;
     after.caption =
         "made: light what is kept, orange what is rebuilt, magenta what is made up, blue what is cut".into();
-    scene.bodies = bodies(seen.mesh, unit, progress)?;
-    scene.defects = Some(known.table());
-    scene.defects_title = "Defects, and what became of each".into();
-    scene.defects_text = CHOOSE.into();
-    scene.panes = vec![before, after];
-    Ok(scene)
+    let counts: Vec<usize> = seen.operands.iter().map(|operand| operand.mesh.triangles.len()).collect();
+    Ok(Some(Fates::new(&counts, sources, kinds)))
+}
+
+/// Which triangles are those of the input, as single precision has them.
+fn kept_layer(mesh: &TriMesh, input: &TriMesh) -> Classes {
+    let key = |mesh: &TriMesh, t: usize| {
+        // 0 and -0 are one.
+        let mut corners = mesh.corners(t).map(|p| (p.as_vec3() + glam::Vec3::ZERO).to_array().map(f32::to_bits));
+        corners.sort_unstable();
+        corners
+    };
+    let own: FxHashSet<_> = (0..input.triangles.len()).map(|t| key(input, t)).collect();
+    let of = (0..mesh.triangles.len()).map(|t| u8::from(!own.contains(&key(mesh, t)))).collect();
+    let [kept, other] = [TriangleKind::Kept, TriangleKind::Rebuilt].map(|kind| map::KINDS[kind as usize]);
+    let legend =
+        vec![(kept, map::meaning(TriangleKind::Kept)), (other, "not in the input: cut, rebuilt or made up".into())];
+    Classes { name: WHAT_IT_IS.into(), of, legend }
 }
 
 /// Of `inspect`.
@@ -111,7 +166,7 @@ pub fn of_inspection(
         RunResult::Inspection { holes: Some(holes), .. } => holes,
         _ => &none,
     };
-    let known = Known { ground: &ground, holes, pipeline: None, fates: None, unit };
+    let known = Known { ground: &ground, holes, pipeline: None, fates: None, made: false, unit };
     let mut pane = before_pane(&ground, holes, "The mesh", progress)?;
     let mut scene = Scene { defects: Some(known.table()), ..Scene::default() };
     if let RunResult::Inspection { mass: Some(_), .. } = result {
@@ -121,6 +176,7 @@ pub fn of_inspection(
     scene.bodies = bodies(&ground.mesh, unit, progress)?;
     scene.defects_title = "Defects".into();
     scene.defects_text = CHOOSE.into();
+    scene.view_title = "The mesh".into();
     scene.panes = vec![pane];
     Ok(scene)
 }
@@ -169,7 +225,8 @@ fn pair(
         pane.picture = picture(&pane.mesh, colours, false, progress)?;
         pane.caption = format!("the redder, the farther from the {other}").replace("the A", "A").replace("the B", "B");
     }
-    Ok(Scene { panes: vec![one, two], first: DISTANCE.into(), charts, ..Scene::default() })
+    let view_title = if names[0] == "A" { "The two meshes" } else { "Before and after" }.into();
+    Ok(Scene { panes: vec![one, two], view_title, first: DISTANCE.into(), charts, ..Scene::default() })
 }
 
 /// From light grey to dark red.
@@ -204,7 +261,7 @@ fn canal_layer(canal_of: &[u32]) -> Option<Classes> {
     let shown = most.min(200);
     let canal = |n: u32| (map::CANALS[(n as usize - 1) % map::CANALS.len()], format!("canal {n}"));
     let legend = std::iter::once((map::KINDS[0], "no canal".to_string())).chain((1..=shown).map(canal)).collect();
-    Some(Classes { name: "Canals".into(), of: canal_of.iter().map(|&n| n.min(shown) as u8).collect(), legend })
+    Some(Classes { name: CANALS.into(), of: canal_of.iter().map(|&n| n.min(shown) as u8).collect(), legend })
 }
 
 fn hole_marks(holes: &[HoleReport]) -> Option<Marks> {
@@ -220,7 +277,7 @@ fn hole_marks(holes: &[HoleReport]) -> Option<Marks> {
 fn canal_marks(pipeline: &Report) -> Option<Marks> {
     let canals = &pipeline.canals.as_ref().filter(|canals| !canals.canals.is_empty())?.canals;
     let marks = canals.iter().map(|canal| (DVec3::from(canal.position), canal.number.to_string())).collect();
-    Some(Marks { name: "Canals".into(), colour: [0, 90, 140], marks })
+    Some(Marks { name: CANALS.into(), colour: [0, 90, 140], marks })
 }
 
 /// The boxes of thin and doubtful places.
@@ -256,13 +313,13 @@ fn distances(
         return Ok(Vec::new());
     }
     // Most of the colours for most of the surface: a few far vertices have the last one.
-    let full = of_one.range.max(of_two.range).max(most / 50.0);
+    let full = of_one.range.max(of_two.range).max(most / 4.0);
     let mut charts = Vec::new();
     let both = [(one, of_one, name_two), (two, of_two, name_one)];
     for (pane, found, other) in both {
         let the = if other.len() == 1 { other.to_string() } else { format!("the {other}") };
         let of = if sided { found.distances } else { found.distances.iter().map(|d| d.abs()).collect() };
-        charts.extend(moved_chart(&pane.mesh, &of, (&pane.title, &the), most, diagonal, unit));
+        charts.extend(moved_chart(&pane.mesh, &of, (&pane.title, &the), diagonal, unit));
         let beyond = if full < most { "or more" } else { "" };
         let end = format!("{} {beyond}", words::length(full, unit)).trim_end().to_string();
         let (range, ends) = match sided {
@@ -282,7 +339,6 @@ fn moved_chart(
     mesh: &TriMesh,
     distances: &[f64],
     (title, other): (&str, &str),
-    most: f64,
     diagonal: f64,
     unit: UnitName<'_>,
 ) -> Option<Histogram> {
@@ -291,6 +347,7 @@ fn moved_chart(
     let least = UNMOVED * diagonal;
     let whole: f64 = all.iter().map(|(_, area)| area).sum();
     let moved: f64 = all.iter().filter(|(d, _)| *d > least).map(|(_, area)| area).sum();
+    let most = all.iter().map(|(d, _)| *d).filter(|d| d.is_finite()).fold(0.0, f64::max);
     let chart = Histogram::of(all.into_iter().filter(|(d, _)| *d > least), [0.0, most], 32)?;
     let share = words::number(((1.0 - moved / whole) * 10_000.0).round() / 100.0);
     let rest = format!("{title}: {share} % of the area lies on {other}; this is how far the rest is from it.");
@@ -313,7 +370,7 @@ fn thickness(pane: &mut Pane, unit: UnitName<'_>, progress: &Progress) -> Result
     let thick = if thick > 0.0 { thick } else { most };
     let weighted = of.iter().enumerate().map(|(t, &value)| (value, area(&pane.mesh, t)));
     let chart = Histogram::of(weighted, [0.0, most], 32).map(|chart| Histogram {
-        title: format!("Thickness of walls, from the middle of each triangle straight through to the other side; the thinnest is {}.", words::length(sorted[0], unit)),
+        title: format!("Thickness of walls, from the middle of each triangle straight through to the other side; a twentieth of all triangles is under {}.", words::length(sorted[sorted.len() / 20], unit)),
         axis: words::with_unit("thickness", unit.map(|unit| format!("({unit})")).as_deref()),
         whole: "of the area".into(),
         ..chart
@@ -344,7 +401,7 @@ fn bodies(mesh: &TriMesh, unit: UnitName<'_>, progress: &Progress) -> Result<Opt
             (true, false) => "body",
             (true, true) => "void",
         };
-        let genus = v.genus.map_or("not closed".into(), |genus| genus.to_string());
+        let genus = v.genus.map_or("not closed".into(), |genus| words::count(genus.max(0) as usize));
         let cells = vec![
             (n + 1).to_string(),
             what.into(),

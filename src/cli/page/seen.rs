@@ -12,10 +12,16 @@ pub struct SolidSeen<'a> {
     pub operands: &'a [Operand<'a>],
     /// The result, with holes open that were to be left so.
     pub mesh: &'a TriMesh,
-    /// Where each of its triangles comes from.
-    pub sources: Vec<TriangleSource>,
-    /// What each of them is.
-    pub kinds: Vec<TriangleKind>,
+    /// Where its triangles come from.
+    pub origin: Origin,
     /// The canal that each bounds, from 1; nothing where none were looked for.
     pub canal_of: &'a [u32],
+}
+
+/// Where the triangles of a result come from.
+pub enum Origin {
+    /// As the run has it: where each comes from, and what it is.
+    Known(Vec<TriangleSource>, Vec<TriangleKind>),
+    /// There are only the files: which triangles are those of the input can be seen, and no more.
+    Files,
 }
