@@ -1,6 +1,6 @@
 //! Which processor casts the rays, the same to the last bit by either, and which makes exact fields, the same but for rounding.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::lattice::{DistanceField, Lattice};
 use crate::ldi::{Layers, ldis};
@@ -9,7 +9,7 @@ use crate::progress::{Progress, Stopped};
 use crate::sdf::exact::{self, ExactError, ExactOptions, Sign};
 
 /// Which processor makes the layered depth images, the same to the last bit, or an exact field, the same but for rounding.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Backend {
@@ -24,7 +24,7 @@ pub enum Backend {
 }
 
 /// Who made the layered depth images, or the field.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BackendReport {
     /// Never [`Backend::Auto`], except where nothing was made.

@@ -68,6 +68,7 @@ pub mod outer;
 pub mod decimate;
 pub mod compare;
 pub mod picture;
+pub mod page;
 pub mod pipeline;
 mod front;
 #[cfg(feature = "cli")]

@@ -1,9 +1,9 @@
 //! What an exact arrangement found and did.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The account of an exact arrangement.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ArrangeReport {
     /// Triangles that took part.

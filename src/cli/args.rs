@@ -4,6 +4,7 @@ use std::ffi::OsString;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
+use super::again::ReportArgs;
 use super::batch::args::{BATCH_HELP, BatchArgs};
 use super::batch::options::rearranged;
 use super::boolean::BooleanArgs;
@@ -95,6 +96,9 @@ pub enum Verb {
     /// Draw a mesh or a slice of a grid, or two of these for comparison, as a PNG picture
     #[command(after_help = EXIT_CODES, aliases = ["view", "draw"])]
     Render(RenderArgs),
+    /// Make a page of the report of a run, to read in a browser
+    #[command(after_help = EXIT_CODES)]
+    Report(ReportArgs),
     /// List the graphics adapters, and what --backend would take
     #[command(after_help = EXIT_CODES)]
     Devices(DevicesArgs),

@@ -17,7 +17,7 @@ use super::shared_args::{CommonArgs, InputArgs};
 use super::streams::{self, is_stream};
 use super::table::{self, Row};
 use super::words::{self, UnitName};
-use super::{output, side, target};
+use super::{output, page, side, target};
 use crate::compare::{CompareOptions, Comparison, Relative, compare, deviation_map};
 use crate::io::{self, Format, LegendEntry, Unit, VertexMap};
 use crate::progress::Stage;
@@ -80,8 +80,10 @@ pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Res
         let written = report.timed(Stage::Map, |_| write_map(path, a, b, unit, session))?;
         report.written(written);
     }
-    session.clear_bar();
     let name = unit.map(|unit| unit.to_string());
+    let sided = found.a.closed && found.b.closed;
+    session.show(report, |_| page::of_comparison([a, b], sided, name.as_deref(), session))?;
+    session.clear_bar();
     if !args.common.json {
         let text = table::table(&rows(&found, [&a.label, &b.label], name.as_deref()));
         streams::write_stream(text.as_bytes())?;
@@ -163,7 +165,8 @@ fn write_map(path: &Path, a: &Input, b: &Input, unit: Option<Unit>, session: &Se
 }
 
 /// The table.
-fn rows(found: &Comparison, labels: [&str; 2], unit: UnitName<'_>) -> Vec<Row> {
+/// What was measured, as rows.
+pub(super) fn rows(found: &Comparison, labels: [&str; 2], unit: UnitName<'_>) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
     for ((row, label), measures) in ["A", "B"].into_iter().zip(labels).zip([&found.a, &found.b]) {
         let closed = if measures.closed { "closed" } else { "open" };

@@ -16,7 +16,7 @@ use super::shared_args::{CommonArgs, InputArgs, OutputArgs};
 use super::table::Row;
 use super::target::Target;
 use super::words::{self, UnitName};
-use super::{solid, summary};
+use super::{page, solid, summary};
 use crate::compare::{CompareOptions, Comparison, compare};
 use crate::decimate::{DecimateError, DecimateOptions, DecimateReport, Decimated, decimate};
 use crate::fit::rounded;
@@ -107,6 +107,8 @@ pub fn run(args: &DecimateArgs, session: &Session, report: &mut RunReport) -> Re
         let options = CompareOptions { samples: SAMPLES, edge_tolerance: None };
         compare(&input.loaded.mesh, mesh, &options, &session.progress).map(Some)
     })?;
+    let name = unit.map(|unit| unit.to_string());
+    session.show(report, |_| page::of_decimation(&input.loaded.mesh, mesh, name.as_deref(), session))?;
     let texture = input.loaded.texture.as_ref();
     let texture =
         texture.and_then(|texture| pipeline::carry_texture_to_simpler(mesh, &origins, &input.loaded.mesh, texture));
@@ -123,7 +125,7 @@ pub fn run(args: &DecimateArgs, session: &Session, report: &mut RunReport) -> Re
         });
     }
     epilogue::measured(session, report, None);
-    say(session, report, (&done, comparison.as_ref()), unit.map(|unit| unit.to_string()).as_deref());
+    say(session, report, (&done, comparison.as_ref()), name.as_deref());
     Ok(if missed { Exit::Limit } else { Exit::Done })
 }
 

@@ -1,12 +1,12 @@
 //! What reports say of files, lattices, slices and graphics adapters.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::mesh::Validity;
 use crate::pipeline::Report;
 
 /// One input in the report.
-#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct InputEntry {
     /// The path as given.
     pub path: String,
@@ -26,7 +26,7 @@ pub struct InputEntry {
     /// Its objects.
     pub parts: Vec<PartEntry>,
     /// Its objects that are taken away from the others.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub negative_parts: Vec<PartEntry>,
     /// What the reader found odd.
     pub warnings: Vec<String>,
@@ -35,7 +35,7 @@ pub struct InputEntry {
 }
 
 /// An object within a file.
-#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct PartEntry {
     /// Its name.
     pub name: String,
@@ -44,17 +44,17 @@ pub struct PartEntry {
 }
 
 /// The output in the report.
-#[derive(Debug, Clone, Serialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct OutputEntry {
     /// The path as given.
     pub path: String,
     /// The format it was written in.
     pub format: String,
     /// Size of the file; nothing of a result that stays in memory.
-    #[serde(skip_serializing_if = "is_nothing")]
+    #[serde(default, skip_serializing_if = "is_nothing")]
     pub bytes: u64,
     /// SHA-256 of the file.
-    #[serde(skip_serializing_if = "String::is_empty")]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub sha256: String,
     /// The unit of its numbers, where known.
     pub unit: Option<String>,
@@ -171,7 +171,7 @@ pub struct DeviceReport {
 }
 
 /// Where triangles of a mesh cross each other.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CrossingEntry {
     /// Straight pieces of the lines along which they do.
     pub segments: usize,

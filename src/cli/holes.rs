@@ -111,7 +111,8 @@ fn told(hole: &HoleReport, several: bool, unit: UnitName<'_>) -> String {
     )
 }
 
-fn closing(hole: &HoleReport) -> String {
+/// What closes a hole, in words.
+pub(super) fn closing(hole: &HoleReport) -> String {
     let triangles = || words::plural(hole.triangles, "triangle");
     match hole.closed_by {
         HoleClosing::Lid(LidShape::Flat) => format!("flat, {}", triangles()),

@@ -11,7 +11,7 @@ use super::inspect_args::InspectArgs;
 use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
-use super::{grids, holes, summary, table, words};
+use super::{grids, holes, page, summary, table, words};
 use crate::arrange::{ArrangeError, crossing_curves};
 use crate::io::Unit;
 use crate::mesh::{Bounds, MassProperties, Overhang, TriMesh, ValidateOptions, Validity, validate};
@@ -45,10 +45,15 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
         true => Some(report.timed(Stage::Fill, |_| holes_of(args, input, unit, session))?),
         false => None,
     };
+    let result = RunResult::Inspection { mass, overhang, crossings, thickness, holes };
+    let name = unit.map(|unit| unit.to_string());
+    session.show(report, |_| page::of_inspection(input, &result, name.as_deref(), session))?;
     session.clear_bar();
+    let RunResult::Inspection { mass, overhang, crossings, thickness, holes } = &result else {
+        return Err(Failure::internal("an inspection was wanted"));
+    };
     if !args.common.json {
         let mut rows = summary::inspection(input, &validity, unit);
-        let name = unit.map(|unit| unit.to_string());
         rows.extend(
             crossings.iter().filter(|found| found.segments > 0).map(|found| crossing_row(found, name.as_deref())),
         );
@@ -61,7 +66,7 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
         }));
         super::streams::write_stream(table::table(&rows).as_bytes())?;
     }
-    report.result = Some(RunResult::Inspection { mass, overhang, crossings, thickness, holes });
+    report.result = Some(result);
     let found: Vec<String> = failing(&args.fail_on, &validity);
     if found.is_empty() {
         return Ok(Exit::Done);

@@ -5,19 +5,19 @@ use std::path::Path;
 use super::exit::Failure;
 use super::session::Session;
 use super::{output, side};
-use crate::io::{self, FaceMap, LegendEntry};
+use crate::io::{self, Colours, FaceMap, LegendEntry};
 use crate::mesh::TriMesh;
 use crate::pipeline::{Opened, TriangleKind};
 
 /// The colours of the kinds, by their numbers: blue-grey, orange, magenta, blue. Eyes that lack a kind of cones tell them apart, too (see the tests).
-const KINDS: [[u8; 3]; 4] = [[176, 190, 205], [230, 150, 20], [165, 15, 105], [45, 15, 180]];
+pub(super) const KINDS: [[u8; 3]; 4] = [[176, 190, 205], [230, 150, 20], [165, 15, 105], [45, 15, 180]];
 
 /// Walls of canals, by their numbers; none looks like a kind.
-const CANALS: [[u8; 3]; 6] =
+pub(super) const CANALS: [[u8; 3]; 6] =
     [[0, 114, 178], [0, 158, 115], [240, 228, 66], [86, 180, 233], [60, 60, 60], [120, 70, 40]];
 
 /// What a kind is, in a legend.
-fn meaning(kind: TriangleKind) -> String {
+pub(super) fn meaning(kind: TriangleKind) -> String {
     let what = match kind {
         TriangleKind::Kept => "as it was in the input",
         TriangleKind::Cut => "pieces of the input's triangles",
@@ -25,6 +25,15 @@ fn meaning(kind: TriangleKind) -> String {
         TriangleKind::MadeUp => "no surface of the input there",
     };
     format!("{}: {what}", kind.word())
+}
+
+/// The colour of each triangle by its kind.
+pub(super) fn colours(kinds: &[TriangleKind]) -> Colours {
+    let colour = |&kind: &TriangleKind| {
+        let [r, g, b] = KINDS[kind as usize];
+        [r, g, b, 255]
+    };
+    Colours::Faces(kinds.iter().map(colour).collect())
 }
 
 /// What is drawn.

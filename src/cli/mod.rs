@@ -1,5 +1,6 @@
 //! The command line: one file a verb. Only this folder prints and knows exit codes.
 
+mod again;
 mod args;
 mod backend;
 mod base;
@@ -50,6 +51,7 @@ mod misuse;
 mod morphology;
 mod negative;
 mod output;
+mod page;
 mod paint;
 mod pick;
 mod preset;
@@ -80,6 +82,7 @@ mod volume;
 mod weights;
 pub mod within;
 mod words;
+mod written;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -116,7 +119,7 @@ pub fn main() -> ExitCode {
         }
     };
     // The others never load a graphics driver.
-    if !matches!(cli.verb, Verb::Inspect(_) | Verb::Compare(_) | Verb::Convert(_) | Verb::Render(_)) {
+    if !matches!(cli.verb, Verb::Inspect(_) | Verb::Compare(_) | Verb::Convert(_) | Verb::Render(_) | Verb::Report(_)) {
         machine::quiet_drivers();
     }
     let no_bug = Arc::new(AtomicBool::new(true));
@@ -215,6 +218,12 @@ fn dispatch(verb: &Verb, host: &Host) -> Exit {
             let made = made(Some(&args.output), args.force).into_iter().collect();
             let job = Job { inputs, made, ..Job::new("render", &args.common) };
             run(host, job, |session, report| render::run(args, session, report))
+        }
+        Verb::Report(args) => {
+            let page = args.page();
+            let made = Made::side("-o", Some(&page)).into_iter().collect();
+            let job = Job { inputs: vec![&args.input], made, ..Job::new("report", &args.common) };
+            run(host, job, |session, report| again::run(args, session, report))
         }
         Verb::Licenses => licenses::run(),
         Verb::Batch(args) => batch::run(args),

@@ -1,5 +1,6 @@
 //! The report: one JSON object a run, the same for every verb.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use serde::Serialize;
@@ -23,7 +24,7 @@ pub struct RunReport {
     /// `meshwright`.
     pub tool: &'static str,
     /// Version of the program.
-    pub version: &'static str,
+    pub version: Cow<'static, str>,
     /// The verb.
     pub verb: &'static str,
     /// Exit status of the process.
@@ -55,7 +56,7 @@ impl RunReport {
         Self {
             schema: SCHEMA,
             tool: env!("CARGO_PKG_NAME"),
-            version: env!("CARGO_PKG_VERSION"),
+            version: Cow::Borrowed(env!("CARGO_PKG_VERSION")),
             verb,
             exit: Exit::Internal.code(),
             error: None,

@@ -20,7 +20,10 @@ pub fn emit(report: &RunReport, common: &CommonArgs, session: &Session) -> Resul
 /// Writes the report where `--report` wants it.
 pub fn to_file(report: &RunReport, common: &CommonArgs, session: &Session) -> Result<(), Failure> {
     match &common.report {
-        Some(path) => super::side::write_side(path, text(report)?.as_bytes(), session),
+        Some(path) => {
+            let text = if is_page(path) { super::page::html(report, session)? } else { text(report)? };
+            super::side::write_side(path, text.as_bytes(), session)
+        }
         None => Ok(()),
     }
 }
@@ -48,5 +51,22 @@ pub fn check_streams<'a>(common: &CommonArgs, made: impl IntoIterator<Item = &'a
 
 /// Refuses a report that is named as something else.
 pub fn check_name(common: &CommonArgs) -> Result<(), Failure> {
-    common.report.as_ref().map_or(Ok(()), |report| super::target::check_extension(report, "json"))
+    let name = common.report.as_ref().filter(|report| !is_page(report));
+    name.map_or(Ok(()), |report| super::target::check_extension(report, "json"))
+}
+
+/// Whether the report is a page, by its name.
+pub fn is_page(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| ["html", "htm"].iter().any(|html| extension.eq_ignore_ascii_case(html)))
+}
+
+/// The command of this process as it would be typed.
+pub fn command() -> String {
+    let quoted = |word: String| {
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:%+@".contains(c);
+        let is_plain = !word.is_empty() && word.chars().all(plain);
+        if is_plain { word } else { format!("'{}'", word.replace('\'', "'\\''")) }
+    };
+    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    std::iter::once(env!("CARGO_PKG_NAME").to_string()).chain(words).collect::<Vec<_>>().join(" ")
 }

@@ -113,6 +113,13 @@ pub enum RunResult {
         /// The written file.
         output: OutputEntry,
     },
+    /// Of `report`.
+    Page {
+        /// The written file.
+        output: OutputEntry,
+        /// What is to be said of files of the run that are not as they were.
+        missing: Vec<String>,
+    },
     /// Of `devices`.
     Devices {
         /// The graphics adapters.
@@ -160,7 +167,7 @@ impl RunResult {
             | Self::Decimation { output, .. } => output.as_ref(),
             Self::Field { frames } => frames.last()?.output.as_ref(),
             Self::Bodies { outputs } => outputs.last(),
-            Self::Conversion { output } | Self::Picture { output, .. } => Some(output),
+            Self::Conversion { output } | Self::Picture { output, .. } | Self::Page { output, .. } => Some(output),
             Self::Plan { .. }
             | Self::DistancePlan { .. }
             | Self::Inspection { .. }

@@ -11,11 +11,13 @@ use std::time::Instant;
 use super::ending::Ending;
 use super::exit::{Exit, Failure};
 use super::files::KeptFiles;
+use super::page::Scene;
 use super::progress_bar::Meter;
+use super::report::RunReport;
 use super::say::eprintln_quietly;
 use super::shared_args::CommonArgs;
 use super::within::Desk;
-use super::{machine, streams};
+use super::{machine, reporting, streams};
 use crate::io::Loaded;
 use crate::io::draft::{Draft, flush_folders, publish};
 use crate::pipeline::{TriangleKind, TriangleSource};
@@ -38,6 +40,10 @@ pub struct Session {
     ending: Ending,
     /// What is said when the files are in their places.
     lines: RefCell<Vec<String>>,
+    /// Whether the report is a page.
+    pages: bool,
+    /// What it shows of the meshes.
+    scene: RefCell<Option<Scene>>,
 }
 
 /// A file that will get its name at the end of the run.
@@ -73,6 +79,8 @@ impl Session {
             meter,
             ending,
             lines,
+            pages: wants_page(common),
+            scene: RefCell::default(),
         })
     }
 
@@ -90,6 +98,8 @@ impl Session {
             meter: Arc::new(Meter::new("", true, false)),
             ending: Ending::unwatched(),
             lines: RefCell::default(),
+            pages: wants_page(common),
+            scene: RefCell::default(),
         }
     }
 
@@ -113,6 +123,30 @@ impl Session {
     /// The desk on which the result of this name is laid, if it does not become a file.
     pub fn desk_for(&self, path: &Path) -> Option<&Desk> {
         self.desk.as_deref().filter(|_| Desk::takes(path))
+    }
+
+    /// What the report will show of the meshes, where it is a page; `look` is asked only then.
+    pub fn show(
+        &self,
+        report: &mut RunReport,
+        look: impl FnOnce(&RunReport) -> Result<Scene, Failure>,
+    ) -> Result<(), Failure> {
+        if self.pages {
+            self.progress.stage(Stage::Draw)?;
+            let scene = report.timed(Stage::Draw, |report| look(report))?;
+            self.scene.replace(Some(scene));
+        }
+        Ok(())
+    }
+
+    /// What was shown, handed over.
+    pub fn take_scene(&self) -> Option<Scene> {
+        self.scene.take()
+    }
+
+    /// The command that was typed; nothing within another program.
+    pub fn command(&self) -> Option<String> {
+        self.desk.is_none().then(reporting::command)
     }
 
     /// A line for the user at the end, when all files are in their places, unless `-q`.
@@ -190,6 +224,10 @@ impl Session {
             self.tell(&line);
         }
     }
+}
+
+fn wants_page(common: &CommonArgs) -> bool {
+    common.report.as_deref().is_some_and(reporting::is_page)
 }
 
 impl Drop for Session {

@@ -61,8 +61,8 @@ pub struct CommonArgs {
     /// Give up after this time (30s, 5m)
     #[arg(long, value_name = "DUR", value_parser = parse_duration)]
     pub timeout: Option<Duration>,
-    /// Write a report of the run, as JSON, to this file
-    #[arg(long, value_name = "FILE.json")]
+    /// Write a report of the run to this file: as JSON, or as a page to read in a browser
+    #[arg(long, value_name = "FILE.json|FILE.html")]
     pub report: Option<PathBuf>,
     /// Write the report, as JSON, to standard output
     #[arg(long)]

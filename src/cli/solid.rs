@@ -15,6 +15,7 @@ use super::input::{self, Input};
 use super::length::{Scale, Simplify};
 use super::map::{self, Map};
 use super::output::{in_memory, write_verified};
+use super::page::{Origin, SolidSeen};
 use super::paint::{self, Arranged};
 use super::pick::{self, PickArgs};
 use super::report::RunReport;
@@ -23,7 +24,7 @@ use super::session::Session;
 use super::site::Site;
 use super::solid_args::SolidArgs;
 use super::target::Target;
-use super::{backend, doubts, keep, limits, machine, negative, summary, table, weights, words};
+use super::{backend, doubts, keep, limits, machine, negative, page, summary, table, weights, words};
 use crate::fit::{FitOptions, rounded};
 use crate::io::{Colours, Format, Loaded, Paint, Unit};
 use crate::ldi::Expression;
@@ -269,6 +270,7 @@ fn make(
         let map = Map { mesh: &outcome.solid, kinds, canal_of: &canal_of };
         report.timed(Stage::Map, |_| map::write(path, &map.opened(opened.as_ref()), session))?;
     }
+    show((inputs, &operands), &outcome, opened.as_ref(), &canal_of, session, report)?;
     if target.is_some_and(|target| session.desk_for(&target.path).is_some()) {
         let kinds = outcome.kinds(operands.iter().copied());
         lay_sources(&outcome, kinds, opened.as_ref(), session);
@@ -316,6 +318,31 @@ pub(super) fn made(
         None => made.map(Changed::from).map_err(|e| (site.failed)(&e)),
         Some(change) => change.apply(made, site, report),
     }
+}
+
+/// Has the report show the result, where it is a page.
+fn show(
+    (inputs, operands): (&[Input], &[Operand<'_>]),
+    outcome: &Outcome,
+    opened: Option<&Opened>,
+    canal_of: &[u32],
+    session: &Session,
+    report: &mut RunReport,
+) -> Result<(), Failure> {
+    let look = |report: &RunReport| {
+        let kinds = outcome.kinds(operands.iter().copied());
+        let (mesh, sources, kinds) = match opened {
+            None => (outcome.solid.mesh(), outcome.sources.clone(), kinds),
+            Some(Opened { mesh, triangles }) => {
+                let of = triangles.iter().map(|&t| (outcome.sources[t as usize], kinds[t as usize]));
+                let (sources, kinds) = of.unzip();
+                (mesh, sources, kinds)
+            }
+        };
+        let origin = Origin::Known(sources, kinds);
+        page::of_solid(&SolidSeen { inputs, operands, mesh, origin, canal_of }, report, session)
+    };
+    session.show(report, look)
 }
 
 /// Tells the owner of a desk where the triangles of the result come from.

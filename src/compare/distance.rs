@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::surface::{Frame, ScaledFaces};
 use crate::mesh::ClosestTree;
@@ -13,7 +13,7 @@ const CHUNK: usize = 1 << 12;
 
 /// Distances from points of one mesh to the nearest points of the other, model units. Mean, RMS and p99 are over
 /// area-uniform samples, the largest over these and all vertices.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Distances {
     /// The mean distance.
@@ -32,7 +32,7 @@ pub struct Distances {
 
 /// Distances both ways, model units: the mean of the means, the root of the mean of the mean squares, and the larger
 /// of each p99 and maximum.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Symmetric {
     /// The mean distance.
@@ -48,7 +48,7 @@ pub struct Symmetric {
 }
 
 /// Distances relative to the diagonal of A's bounding box.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Relative {
     /// The mean distance.

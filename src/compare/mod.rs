@@ -11,7 +11,7 @@ mod sample;
 mod sharp;
 mod surface;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::mesh::{TriMesh, ValidateOptions, Validity, validate};
 use crate::progress::{Progress, Stage, Stopped};
@@ -46,7 +46,7 @@ impl Default for CompareOptions {
 
 /// What [`compare`] finds. A is the reference. Triangles without area take no part, except that they count in
 /// `triangles`. A measure is `None` where there is nothing to measure.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Comparison {
     /// The measures of A.
@@ -74,7 +74,7 @@ pub struct Comparison {
 }
 
 /// Measures of one mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Measures {
     /// All triangles, also those without area.
@@ -99,7 +99,7 @@ impl Measures {
 }
 
 /// How the normals differ.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Normals {
     /// Whether the side counts. Where neighbours in A disagree about the outside it does not: a normal and its

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::surface::Frame;
 use crate::mesh::edges::Edges;
@@ -17,7 +17,7 @@ const CHUNK: usize = 1 << 12;
 
 /// How the sharp edges agree: those with exactly two triangles whose normals are over 30 degrees apart, vertices of
 /// equal coordinates taken as one.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SharpEdges {
     /// A point is found when an edge of the other mesh is at most this far, model units.

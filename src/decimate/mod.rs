@@ -17,7 +17,7 @@ mod guard;
 mod work;
 
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::fit::rounded;
 use crate::mesh::{NotManifold, Solid, SolidError, TriMesh, ValidateOptions, Validity, validate};
@@ -40,7 +40,7 @@ pub struct DecimateOptions {
 }
 
 /// What [`decimate`] did.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DecimateReport {
     /// Triangles before.

@@ -60,7 +60,7 @@ impl Default for FitOptions {
 }
 
 /// What [`fit`] did.
-#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FitReport {
     /// Triangles of the source that were kept as they are, before simplification.

@@ -1,10 +1,10 @@
 //! What counts as inside of an operand, by how often its surface winds around a point.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Which winding numbers are inside. The number of an operand at a point says how often its surface runs around the point: once more for each
 /// closed shell around it that faces outwards, and once less for each that faces inwards.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Inside {

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 use nalgebra::{Matrix3, SymmetricEigen};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::TriMesh;
 
 /// Integrals over a solid of density 1, so that its mass is its volume. Model units.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MassProperties {
     /// The volume.
@@ -74,7 +74,7 @@ fn column(p: DVec3) -> nalgebra::Vector3<f64> {
 }
 
 /// How much of a surface hangs over, when it is printed as it stands, z up.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Overhang {
     /// The angle from the vertical beyond which a surface that faces down hangs over, degrees.

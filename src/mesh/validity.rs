@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::TriMesh;
 use super::edges::{Edges, copies};
@@ -31,7 +31,7 @@ impl Default for ValidateOptions {
 
 /// Counts and measures of a mesh. Triangles with a repeated index count as degenerate and take no part in anything
 /// else; triangles without an area count as degenerate too, but do take part in the topology.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Validity {
     /// Vertices, used or not.

@@ -9,7 +9,7 @@ pub use clean::{Cleaned, clean};
 pub use patches::{PatchId, Patches, orient_patches};
 pub use sides::orient_sides;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What is done about the orientation of the input's triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,7 +22,7 @@ pub enum OrientMode {
 }
 
 /// What cleaning and orientation did.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OrientReport {
     /// Triangles that were dropped because they have no area or a repeated vertex.

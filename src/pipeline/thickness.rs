@@ -1,6 +1,6 @@
 //! How thick the walls of a mesh are, and how wide the gaps between them.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::frame::Frame;
 use super::sizing::{self, MAX_RESOLUTION, TYPED};
@@ -11,7 +11,7 @@ use crate::progress::{Progress, Stage, Stopped};
 use crate::survey::{Cast, Soup, SoupError, Survey};
 
 /// The widths of walls and gaps, and the voxel that holds them. Model units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThicknessReport {
     /// Voxel spacing of the rays.
@@ -32,7 +32,7 @@ pub struct ThicknessReport {
 }
 
 /// How some lengths are distributed, model units.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LengthsReport {
     /// How many there are.

@@ -21,10 +21,10 @@ pub use lid::Lid;
 pub use tally::{Jury, Votes};
 pub use winding::Winding;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How the votes of the directions make a voxel inside or outside.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum VoteRule {
@@ -41,7 +41,7 @@ pub enum VoteRule {
 }
 
 /// How sure the voxels near the surface are.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct VoteReport {
     /// Voxels that were voted on (those of the active bricks).
@@ -53,7 +53,7 @@ pub struct VoteReport {
 }
 
 /// A connected group of doubtful voxels.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DoubtfulRegion {
     /// Smallest corner, model units.

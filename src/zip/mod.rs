@@ -8,7 +8,7 @@ mod grid;
 
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use self::grid::Grid;
 use crate::mesh::edges::Edges;
@@ -35,7 +35,7 @@ pub struct Zipped {
 }
 
 /// What was done to close cracks.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ZipReport {
     /// Open edges before.

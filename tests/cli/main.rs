@@ -19,6 +19,7 @@ mod files;
 #[cfg(feature = "gpu")]
 mod gpu;
 mod maps;
+mod page;
 mod readers;
 mod schema;
 mod sdf;

@@ -140,7 +140,8 @@ fn every_verb_reports_what_the_schema_says() {
     let mut seen = BTreeSet::new();
     for (line, kind) in [
         ("repair testdata/broken_mug.obj -o OUT/mug.stl --resolution 24 --keep-partial", "solid"),
-        ("repair testdata/torus.ply -o OUT/torus.stl --resolution 24", "solid"),
+        ("repair testdata/torus.ply -o OUT/torus.stl --resolution 24 --report OUT/run.json", "solid"),
+        ("report OUT/run.json -o OUT/run.html", "page"),
         ("repair testdata/overlapping_boxes.obj --each -o OUT/each.3mf", "objects"),
         ("repair testdata/torus.ply --plan --resolution 24", "plan"),
         ("repair testdata/overlapping_boxes.obj -o OUT/boxes.stl", "solid"),

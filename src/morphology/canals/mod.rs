@@ -10,7 +10,7 @@ mod topology;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::closed::{BESIDE, samples};
 use super::{Balls, Centres, Gauge, OffsetError, Region};
@@ -20,7 +20,7 @@ use crate::progress::Progress;
 use fill::{Fill, FilledPart};
 
 /// Where a canal leads.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum CanalKind {
@@ -49,7 +49,7 @@ impl std::fmt::Display for CanalKind {
 }
 
 /// One canal. All its measures are in model units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Canal {
     /// The number of the canal, counted from 1; the widest has the lowest.

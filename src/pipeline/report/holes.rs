@@ -1,11 +1,11 @@
 //! The holes of an operand, and how each was closed.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::fill::{Lid, Rim, Style};
 
 /// A hole, and what closes it. Model units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HoleReport {
     /// The operand that it is in, from 0.
@@ -33,7 +33,7 @@ pub struct HoleReport {
 }
 
 /// What closes a hole.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum HoleClosing {
@@ -48,7 +48,7 @@ pub enum HoleClosing {
 }
 
 /// The shape of a lid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum LidShape {
@@ -70,7 +70,7 @@ impl LidShape {
 }
 
 /// Why a rim has no lid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum NotLidded {

@@ -19,7 +19,7 @@ pub use topology::{LostBody, Topology, TopologyReport};
 pub use triangles::{Dropped, StandingReport, TriangleCounts, TriangleKind};
 pub use warning::Warning;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::arrange::ArrangeReport;
 use crate::backend::BackendReport;
@@ -31,7 +31,7 @@ use crate::vote::VoteReport;
 use crate::zip::ZipReport;
 
 /// The account of one run.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Report {
     /// Which winding numbers of an operand were inside.
@@ -113,7 +113,7 @@ impl Report {
 }
 
 /// Rays and crossings of all 13 directions.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LdiReport {
     /// Rays that hit something.
@@ -129,7 +129,7 @@ pub struct LdiReport {
 }
 
 /// Seconds a stage took.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StageTime {
     /// The stage.

@@ -1,11 +1,11 @@
 //! What operations on a solid found and did.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::morphology::{Canal, Operation};
 
 /// What was done to the solid.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MorphologyReport {
     /// What was done.
@@ -31,7 +31,7 @@ pub struct MorphologyReport {
 }
 
 /// What was too thin.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThickenReport {
     /// The least thickness, model units.
@@ -47,7 +47,7 @@ pub struct ThickenReport {
 }
 
 /// What was hollowed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HollowReport {
     /// Thickness of the wall, model units.
@@ -65,7 +65,7 @@ pub struct HollowReport {
 }
 
 /// A drain as it was made; model units.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DrainReport {
     /// Where it begins, on the surface.
@@ -79,7 +79,7 @@ pub struct DrainReport {
 }
 
 /// What was found of canals.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CanalReport {
     /// The diameter that was asked for, model units.

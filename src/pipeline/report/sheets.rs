@@ -1,9 +1,9 @@
 //! What was made of sheets, and of surfaces as a ball sees them.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A block under a sheet. Model units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BlockReport {
     /// The axis across which the base lies: `x`, `y` or `z`.
@@ -25,7 +25,7 @@ pub struct BlockReport {
 }
 
 /// What a ball saw from outside. Model units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OuterReport {
     /// Diameter of the ball.

@@ -1,9 +1,9 @@
 //! Walls and gaps near or below the voxel size.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Evidence of walls and gaps that the voxel size may not hold.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThinReport {
     /// Spans (ray pieces inside the solid) along the three face directions.
@@ -24,7 +24,7 @@ pub struct ThinReport {
 }
 
 /// A place where walls or gaps are thinner than the lattice holds.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ThinRegion {
     /// Whether it is a gap; else a wall.

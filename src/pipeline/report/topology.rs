@@ -1,9 +1,9 @@
 //! Bodies, voids and tunnels, before and after.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a surface bounds.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Topology {
     /// Closed surfaces that face outwards.
@@ -15,7 +15,7 @@ pub struct Topology {
 }
 
 /// A body or void of the operands that the result should have and has not.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LostBody {
     /// Whether it was a void.
@@ -29,7 +29,7 @@ pub struct LostBody {
 }
 
 /// How the bodies of the result compare with those that the operands describe.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TopologyReport {
     /// What the operands describe; `None` where they are too torn to tell, or where they cross each other. Bodies that touch count

@@ -1,9 +1,9 @@
 //! What became of triangles and surfaces.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Shells of the operands that stayed as they are, without any voxel.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct StandingReport {
     /// Shells that are part of the result as they are.
@@ -17,7 +17,7 @@ pub struct StandingReport {
 }
 
 /// What a triangle of a result is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum TriangleKind {
@@ -50,7 +50,7 @@ impl TriangleKind {
 }
 
 /// How many triangles of a result are of each kind.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TriangleCounts {
     /// Triangles of operands, with the same corners.
@@ -82,7 +82,7 @@ impl TriangleCounts {
 }
 
 /// Closed surfaces that were dropped.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Dropped {
     /// How many.
