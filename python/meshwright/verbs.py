@@ -39,6 +39,7 @@ def repair(
     *,
     outer: bool | Length | None = None,
     thickness: Length | None = None,
+    part: str | Sequence[str] | None = None,
     max_hole: Length | None = None,
     holes: int | Sequence[int] | None = None,
     preset: Literal["print", "scan", "cad"] | None = None,
@@ -74,6 +75,8 @@ def repair(
     - ``outer``: Keep the surface as a ball of this diameter sees it from outside: what is narrower is no way in, and what the ball does not come to
       goes [default of LEN: 1%].
     - ``thickness``: How thick sheets become that the ball of outer sees from both sides.
+    - ``part``: Work on this object alone, by its name or the number that ``inspect`` lists (may be given several times): with each the others stay as
+      they are, without it they are left out.
     - ``max_hole``: Leave holes open whose rim is wider than this (exit status 3 where there are some).
     - ``holes``: Close these holes alone, by the numbers that ``inspect holes`` lists (exit status 3 where others are left open).
     - ``preset``: Options that suit printing, scans or parts; those given by hand win.
@@ -106,7 +109,7 @@ def repair(
     >>> mug.validity["open_edges"]
     0
     """
-    options: dict[str, Any] = {"outer": outer, "thickness": thickness, "max_hole": max_hole, "holes": holes, "preset": preset, "method": method, "resolution": resolution, "voxel": voxel, "orient": orient, "inside": inside, "tolerance": tolerance, "fill": fill, "vote": vote, "backend": backend, "no_collapse": no_collapse, "no_fit": no_fit, "rebuild": rebuild, "simplify": simplify, "drop_smaller": drop_smaller, "map": map, "max_memory": max_memory, "in_format": in_format, "unit": unit, "out_format": out_format, "keep_partial": keep_partial, "timeout": timeout}
+    options: dict[str, Any] = {"outer": outer, "thickness": thickness, "part": part, "max_hole": max_hole, "holes": holes, "preset": preset, "method": method, "resolution": resolution, "voxel": voxel, "orient": orient, "inside": inside, "tolerance": tolerance, "fill": fill, "vote": vote, "backend": backend, "no_collapse": no_collapse, "no_fit": no_fit, "rebuild": rebuild, "simplify": simplify, "drop_smaller": drop_smaller, "map": map, "max_memory": max_memory, "in_format": in_format, "unit": unit, "out_format": out_format, "keep_partial": keep_partial, "timeout": timeout}
     made, _ = call("repair", [mesh], options, result=str(out_format or "ply"), threads=threads, progress=progress)
     return cast(Mesh, made[0])
 
