@@ -78,7 +78,7 @@ def plan(verb: str, *meshes: MeshLike, **options: Any) -> dict[str, Any]:
 
     >>> import meshwright as mw
     >>> mw.plan("sdf", "testdata/hollow_ball.stl", resolution=64)["dims"]
-    [73, 73, 73]
+    [78, 78, 78]
     """
     _, report = call(verb, list(meshes), {**options, "plan": True}, result=None)
     return dict(report["result"]["plan"])
