@@ -23,6 +23,7 @@ use super::sdf_args::SdfArgs;
 use super::shared_args::EXIT_CODES;
 use super::solid_args::SolidArgs;
 use super::split::SplitArgs;
+use super::view::ViewArgs;
 
 /// Repairs triangle meshes and does booleans on broken ones. Offline.
 #[derive(Debug, Parser)]
@@ -94,8 +95,11 @@ pub enum Verb {
     #[command(after_help = EXIT_CODES)]
     Convert(ConvertArgs),
     /// Draw a mesh or a slice of a grid, or two of these for comparison, as a PNG picture
-    #[command(after_help = EXIT_CODES, aliases = ["view", "draw"])]
+    #[command(after_help = EXIT_CODES, alias = "draw")]
     Render(RenderArgs),
+    /// Show meshes, maps and slices of grids in a browser
+    #[command(after_help = EXIT_CODES)]
+    View(ViewArgs),
     /// Make a page of the report of a run, to read in a browser
     #[command(after_help = EXIT_CODES)]
     Report(ReportArgs),

@@ -65,6 +65,7 @@ mod say;
 mod schema;
 mod sdf;
 mod sdf_args;
+mod serve;
 mod session;
 mod shared_args;
 mod side;
@@ -78,6 +79,8 @@ mod summary;
 mod table;
 mod target;
 mod transform;
+mod typed;
+mod view;
 mod volume;
 mod weights;
 pub mod within;
@@ -119,7 +122,10 @@ pub fn main() -> ExitCode {
         }
     };
     // The others never load a graphics driver.
-    if !matches!(cli.verb, Verb::Inspect(_) | Verb::Compare(_) | Verb::Convert(_) | Verb::Render(_) | Verb::Report(_)) {
+    if !matches!(
+        cli.verb,
+        Verb::Inspect(_) | Verb::Compare(_) | Verb::Convert(_) | Verb::Render(_) | Verb::Report(_) | Verb::View(_)
+    ) {
         machine::quiet_drivers();
     }
     let no_bug = Arc::new(AtomicBool::new(true));
@@ -218,6 +224,12 @@ fn dispatch(verb: &Verb, host: &Host) -> Exit {
             let made = made(Some(&args.output), args.force).into_iter().collect();
             let job = Job { inputs, made, ..Job::new("render", &args.common) };
             run(host, job, |session, report| render::run(args, session, report))
+        }
+        Verb::View(args) => {
+            let inputs = args.inputs.iter().map(AsRef::as_ref).collect();
+            let made = Made::side("-o", args.output.as_ref()).into_iter().collect();
+            let job = Job { inputs, made, max_memory: args.max_memory, ..Job::new("view", &args.common) };
+            run(host, job, |session, report| view::run(args, session, report))
         }
         Verb::Report(args) => {
             let page = args.page();

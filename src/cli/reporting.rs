@@ -7,6 +7,7 @@ use super::report::RunReport;
 use super::session::Session;
 use super::shared_args::CommonArgs;
 use super::streams::is_stream;
+use super::typed::is_page;
 
 /// Writes the report where `--json` and `--report` want it: the file first, because a stream cannot be taken back.
 pub fn emit(report: &RunReport, common: &CommonArgs, session: &Session) -> Result<(), Failure> {
@@ -53,20 +54,4 @@ pub fn check_streams<'a>(common: &CommonArgs, made: impl IntoIterator<Item = &'a
 pub fn check_name(common: &CommonArgs) -> Result<(), Failure> {
     let name = common.report.as_ref().filter(|report| !is_page(report));
     name.map_or(Ok(()), |report| super::target::check_extension(report, "json"))
-}
-
-/// Whether the report is a page, by its name.
-pub fn is_page(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| ["html", "htm"].iter().any(|html| extension.eq_ignore_ascii_case(html)))
-}
-
-/// The command of this process as it would be typed.
-pub fn command() -> String {
-    let quoted = |word: String| {
-        let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:%+@".contains(c);
-        let is_plain = !word.is_empty() && word.chars().all(plain);
-        if is_plain { word } else { format!("'{}'", word.replace('\'', "'\\''")) }
-    };
-    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
-    std::iter::once(env!("CARGO_PKG_NAME").to_string()).chain(words).collect::<Vec<_>>().join(" ")
 }

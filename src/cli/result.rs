@@ -113,7 +113,7 @@ pub enum RunResult {
         /// The written file.
         output: OutputEntry,
     },
-    /// Of `report`.
+    /// Of `report`, and of `view` with `-o`.
     Page {
         /// The written file.
         output: OutputEntry,

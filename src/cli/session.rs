@@ -17,7 +17,7 @@ use super::report::RunReport;
 use super::say::eprintln_quietly;
 use super::shared_args::CommonArgs;
 use super::within::Desk;
-use super::{machine, reporting, streams};
+use super::{machine, streams, typed};
 use crate::io::Loaded;
 use crate::io::draft::{Draft, flush_folders, publish};
 use crate::pipeline::{TriangleKind, TriangleSource};
@@ -144,9 +144,14 @@ impl Session {
         self.scene.take()
     }
 
+    /// Whether it is one within another program.
+    pub fn is_within(&self) -> bool {
+        self.desk.is_some()
+    }
+
     /// The command that was typed; nothing within another program.
     pub fn command(&self) -> Option<String> {
-        self.desk.is_none().then(reporting::command)
+        self.desk.is_none().then(typed::command)
     }
 
     /// A line for the user at the end, when all files are in their places, unless `-q`.
@@ -227,7 +232,7 @@ impl Session {
 }
 
 fn wants_page(common: &CommonArgs) -> bool {
-    common.report.as_deref().is_some_and(reporting::is_page)
+    common.report.as_deref().is_some_and(typed::is_page)
 }
 
 impl Drop for Session {

@@ -64,6 +64,8 @@ pub struct Page {
     pub report: serde_json::Value,
     /// The name of the program and its version.
     pub made_by: String,
+    /// Whether the page says `bye` to where it came from when its tab is shut.
+    pub served: bool,
 }
 
 const STYLE: &str = include_str!("style.css");
@@ -71,6 +73,10 @@ const SCRIPT: &str = include_str!("script.js");
 
 /// Nothing may be asked of any other file or machine.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
+
+/// Of a page that is served: the farewell goes to where it came from, and to nowhere else.
+const FAREWELL: (&str, &str) =
+    ("; connect-src 'self'", "<script>\naddEventListener('pagehide', () => navigator.sendBeacon('bye'));\n</script>\n");
 
 impl Page {
     /// The page. The same data give the same text.
@@ -80,16 +86,17 @@ impl Page {
             Mood::Careful => ("careful", "!"),
             Mood::Bad => ("bad", "✗"),
         };
+        let (more, farewell) = if self.served { FAREWELL } else { ("", "") };
         let first: String = self.first.iter().map(Section::html).collect();
         let sections: String = self.sections.iter().map(Section::html).collect();
         format!(
-            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}{more}\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n\
              <meta name=\"generator\" content=\"{made_by}\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
              <header><h1>{title}</h1><p class=\"subtitle\">{subtitle}</p>\
              <p class=\"verdict {class}\"><span class=\"sign\" aria-hidden=\"true\">{sign}</span><span>{verdict}</span></p></header>\n\
              <main>\n{first}{view}{sections}</main>\n<footer><p>Made by {made_by}. The page holds all of its data; nothing is fetched or sent.</p></footer>\n\
-             <script type=\"application/json\" id=\"report\">{report}</script>\n{script}</body>\n</html>\n",
+             <script type=\"application/json\" id=\"report\">{report}</script>\n{script}{farewell}</body>\n</html>\n",
             made_by = html(&self.made_by),
             title = html(&self.title),
             subtitle = html(&self.subtitle),

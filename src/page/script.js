@@ -318,6 +318,7 @@ function explain() {
   legend.replaceChildren();
   const classes = panes.flatMap(pane => pane.data.classes).filter(c => c.name === state.colour);
   const entries = new Map();
+  if (classes.some(c => c.legend.some(([, text, count]) => count && !text))) return;
   for (const [colour, text, count] of classes.flatMap(c => c.legend)) {
     if (count) entries.set(text, [colour, Math.max(count, (entries.get(text) || [])[1] || 0)]);
   }

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::chart::Histogram;
 use super::escape::html;
+use super::pack::data_address;
 
 /// A part of the page with a heading.
 #[derive(Debug, Clone, Default)]
@@ -33,6 +34,13 @@ pub enum Part {
     Chart(Histogram),
     /// Text as it is typed.
     Code(String),
+    /// A picture.
+    Picture {
+        /// A PNG file.
+        png: Vec<u8>,
+        /// What it shows.
+        caption: String,
+    },
 }
 
 /// A table.
@@ -66,8 +74,9 @@ pub struct Place {
     pub from: DVec3,
 }
 
-/// As many rows of a table are printed.
-const PRINTED: usize = 9;
+/// Tables of more rows are not printed whole, and as many rows of them are.
+const SHORT: usize = 14;
+const PRINTED: usize = 8;
 
 impl Section {
     pub(super) fn html(&self) -> String {
@@ -93,6 +102,13 @@ impl Part {
             }
             Self::Table(table) => write!(out, "{}", table.html()),
             Self::Chart(chart) => write!(out, "{}", chart.svg()),
+            Self::Picture { png, caption } => {
+                let (caption, address) = (html(caption), data_address("image/png", png));
+                write!(
+                    out,
+                    "<figure class=\"slice\"><img alt=\"{caption}\" src=\"{address}\"><figcaption>{caption}</figcaption></figure>"
+                )
+            }
             Self::Code(text) => write!(out, "<pre><code>{}</code></pre>", html(text)),
         };
     }
@@ -102,8 +118,9 @@ impl Table {
     fn html(&self) -> String {
         let head: String = self.head.iter().map(|cell| format!("<th scope=\"col\">{}</th>", html(cell))).collect();
         let mut out = format!("<div class=\"wide\"><table><thead><tr>{head}</tr></thead><tbody>\n");
+        let printed = if self.rows.len() > SHORT { PRINTED } else { SHORT };
         for (n, row) in self.rows.iter().enumerate() {
-            let class = if n >= PRINTED { " class=\"unprinted\"" } else { "" };
+            let class = if n >= printed { " class=\"unprinted\"" } else { "" };
             let place = row.place.map_or(String::new(), |place| {
                 let text = |p: DVec3| p.to_array().map(|x| x.to_string()).join(" ");
                 format!(
@@ -120,7 +137,7 @@ impl Table {
         if self.more > 0 {
             let _ = write!(out, "<p class=\"note\">And {} more, which the report in JSON has.</p>", self.more);
         }
-        if let Some(unprinted) = self.rows.len().checked_sub(PRINTED).filter(|&n| n > 0) {
+        if let Some(unprinted) = self.rows.len().checked_sub(printed).filter(|&n| n > 0) {
             let _ =
                 write!(out, "<p class=\"note printed\">{unprinted} further rows are on the page and not on paper.</p>");
         }

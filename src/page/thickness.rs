@@ -33,7 +33,7 @@ pub fn wall_thickness(mesh: &TriMesh, progress: &Progress) -> Result<Vec<f64>, S
         let own = &triangles[t];
         let normal = (own.v1 - own.v0).cross(own.v2 - own.v0);
         let length = normal.length();
-        if !(length > 0.0) {
+        if length.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
             return Ok(f64::NAN);
         }
         let inwards = -normal / length;

@@ -99,7 +99,7 @@ fn values_data(values: &Values, less: Option<&Fewer>) -> Value {
             let mut of = vec![f64::NAN; less.mesh.positions.len()];
             for (&value, &v) in values.of.iter().zip(&less.vertex_of) {
                 let held = &mut of[v as usize];
-                if !(held.abs() >= value.abs()) {
+                if held.is_nan() || held.abs() < value.abs() {
                     *held = value;
                 }
             }

@@ -32,6 +32,7 @@ mod testdata;
 mod textures;
 mod tools;
 mod usage;
+mod view;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

@@ -189,6 +189,8 @@ fn capital(name: &str) -> String {
     name
 }
 
+/// A place in words; what is beside the rest nothing is 0.
 fn around(at: DVec3) -> String {
-    at.to_array().map(words::number).join(" ")
+    let least = 1e-9 * at.abs().max_element();
+    at.to_array().map(|x| words::number(if x.abs() < least { 0.0 } else { x })).join(" ")
 }

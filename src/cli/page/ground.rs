@@ -52,7 +52,7 @@ impl Ground {
             made.inputs.push((mesh.triangles.len(), file_name(&input.label).to_string()));
             made.mesh.append(mesh);
         }
-        let crossing = made.wrong.of.iter().any(|&class| class == CROSSING) || inputs.len() > 1;
+        let crossing = made.wrong.of.contains(&CROSSING) || inputs.len() > 1;
         if let Some(Ok(curves)) = crossing.then(|| crossing_curves(&made.mesh, progress)) {
             let colour = [0, 60, 136];
             made.lines.push(Lines { name: "Lines where triangles cross".into(), colour, segments: curves });

@@ -6,10 +6,14 @@ mod fates;
 mod ground;
 mod scene;
 mod seen;
+mod shown;
 mod verdict;
+mod viewed;
 
-pub use scene::{Scene, of_comparison, of_decimation, of_inspection, of_solid};
+pub use scene::{of_comparison, of_decimation, of_inspection, of_solid};
 pub use seen::{Origin, SolidSeen};
+pub use shown::Scene;
+pub use viewed::html_of_files;
 
 use super::exit::Failure;
 use super::report::RunReport;
@@ -69,6 +73,7 @@ fn page(report: &RunReport, json: serde_json::Value, scene: Scene, command: Opti
         sections,
         report: json,
         made_by: format!("{} {}", report.tool, report.version),
+        served: false,
     }
 }
 

@@ -7,6 +7,7 @@ use super::defects::Known;
 use super::fates::Fates;
 use super::ground::{Ground, INPUT, input_class};
 use super::seen::{Origin, SolidSeen};
+use super::shown::Scene;
 use crate::cli::entries::InputEntry;
 use crate::cli::exit::Failure;
 use crate::cli::input::Input;
@@ -22,19 +23,6 @@ use crate::page::{self, Classes, Histogram, Lines, Marks, Pane, Row, Table, Valu
 use crate::picture::{Painted, RenderError, RenderOptions, render};
 use crate::pipeline::{HoleReport, Report, TriangleKind, TriangleSource};
 use crate::progress::Progress;
-
-/// What is shown beside the report.
-#[derive(Default)]
-pub struct Scene {
-    pub(super) panes: Vec<Pane>,
-    pub(super) view_title: String,
-    pub(super) first: String,
-    pub(super) defects: Option<Table>,
-    pub(super) defects_title: String,
-    pub(super) defects_text: String,
-    pub(super) charts: Vec<Histogram>,
-    pub(super) bodies: Option<Table>,
-}
 
 const WHAT_IT_IS: &str = "What each triangle is";
 const DISTANCE: &str = "Distance from the other";
@@ -236,7 +224,13 @@ fn shade(distance: f64, most: f64) -> [u8; 4] {
     [mix(216.0, 165.0), mix(221.0, 30.0), mix(227.0, 0.0), 255]
 }
 
-fn before_pane(ground: &Ground, holes: &[HoleReport], title: &str, progress: &Progress) -> Result<Pane, Failure> {
+/// What was read, with its defects.
+pub(super) fn before_pane(
+    ground: &Ground,
+    holes: &[HoleReport],
+    title: &str,
+    progress: &Progress,
+) -> Result<Pane, Failure> {
     let mut pane =
         Pane { title: title.into(), mesh: ground.mesh.clone(), lines: ground.lines.clone(), ..Pane::default() };
     if ground.wrong.of.iter().any(|&class| class > 0) {
