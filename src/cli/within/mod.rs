@@ -83,7 +83,7 @@ pub fn call(call: Call) -> Result<Answer, Refusal> {
     arguments.insert(0, env!("CARGO_PKG_NAME").into());
     arguments.extend(["--json", "--quiet"].map(OsString::from));
     let parsed = args::parse(arguments.iter().cloned()).map_err(|error| misunderstood(&error, &arguments[1..]))?;
-    if let Verb::Batch(_) | Verb::Licenses | Verb::Schema = parsed.verb {
+    if let Verb::Batch(_) | Verb::View(_) | Verb::Licenses | Verb::Schema = parsed.verb {
         return Err(Failure::usage("this verb is for the command line alone").into());
     }
     let meshes = meshes.into_iter().map(|(name, loaded)| (PathBuf::from(name), loaded));
