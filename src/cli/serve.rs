@@ -12,10 +12,10 @@ use crate::progress::{Progress, Stopped};
 /// How often it is looked whether the run was to stop.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// After a tab was shut, this long it may come back: a page that is loaded anew is shut first.
+/// After the last tab was shut, this long it may come back.
 const BACK: Duration = Duration::from_secs(3);
 
-/// As much of what a tab says when it is shut is read: nothing.
+/// Where a tab says that it is shut.
 const FAREWELL: &str = "bye";
 
 /// A page that is served.
@@ -47,6 +47,8 @@ impl Served {
 
     /// Serves the page until its tab is shut, or the run is to stop.
     pub fn run(&self, page: &str, progress: &Progress) -> Result<(), Stopped> {
+        // A tab that loads the page anew may ask for it before it says farewell, or after.
+        let mut tabs = 0usize;
         let mut shut: Option<Instant> = None;
         loop {
             progress.check()?;
@@ -58,11 +60,13 @@ impl Served {
             match self.wanted(&request) {
                 Wanted::Page => {
                     shut = None;
-                    let body = if *request.method() == Method::Head { String::new() } else { page.to_string() };
-                    answer(request, Response::from_string(body));
+                    let head = *request.method() == Method::Head;
+                    tabs += usize::from(!head);
+                    answer(request, Response::from_string(if head { "" } else { page }));
                 }
                 Wanted::Farewell => {
-                    shut = Some(Instant::now());
+                    tabs = tabs.saturating_sub(1);
+                    shut = (tabs == 0).then(Instant::now);
                     answer(request, Response::from_string("").with_status_code(204));
                 }
                 Wanted::Nothing => answer(request, Response::from_string("").with_status_code(404)),

@@ -304,7 +304,7 @@ const controls = make('div', stage, { className: 'controls' });
 const group = title => { const set = make('fieldset', controls); make('legend', set, { textContent: title }); return set; };
 if (panes.length > 1) {
   const row = make('div', group('Meshes'), { className: 'row' });
-  const buttons = [['both', 'Both'], ...panes.map((pane, n) => [n, pane.data.title])].map(([which, text]) => {
+  const buttons = [['both', panes.length > 2 ? 'All' : 'Both'], ...panes.map((pane, n) => [n, pane.data.title])].map(([which, text]) => {
     const button = make('button', row, { type: 'button', textContent: text });
     button.onclick = () => { state.which = which; buttons.forEach(b => b.setAttribute('aria-pressed', b === button)); draw(); };
     button.setAttribute('aria-pressed', which === 'both');

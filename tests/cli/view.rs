@@ -124,6 +124,10 @@ fn only_who_has_the_token_gets_the_page() {
     assert_eq!(viewer.asks("POST", &format!("/{wrong}/bye"), &host).0, 404);
     assert_eq!(viewer.asks("GET", &page, &host).0, 200);
     assert_eq!(viewer.asks("POST", &format!("/{token}/bye"), &host).0, 204);
+    // Two tabs had the page, so that one is left.
+    std::thread::sleep(Duration::from_secs(4));
+    assert_eq!(viewer.process.try_wait().expect("it is ours"), None);
+    assert_eq!(viewer.asks("POST", &format!("/{token}/bye"), &host).0, 204);
     let (status, _) = viewer.ends();
     assert_eq!(status, Some(0));
 }
