@@ -91,11 +91,11 @@ impl Desk {
     }
 
     /// What the caller finds.
-    pub fn answer(&self) -> Result<Answer, Refusal> {
+    pub fn answer(&self) -> Result<Answer, Box<Refusal>> {
         let Made { products, end, .. } = self.made.take();
         match end {
             Some((Ok(exit), report)) => Ok(Answer { products, report, exit }),
-            Some((Err(failure), report)) => Err(Refusal { failure, report: Some(report) }),
+            Some((Err(failure), report)) => Err(Box::new(Refusal { failure, report: Some(report) })),
             None => Err(Failure::usage("this verb does nothing within another program").into()),
         }
     }

@@ -68,9 +68,9 @@ pub struct Refusal {
     pub report: Option<serde_json::Value>,
 }
 
-impl From<Failure> for Refusal {
+impl From<Failure> for Box<Refusal> {
     fn from(failure: Failure) -> Self {
-        Self { failure, report: None }
+        Self::new(Refusal { failure, report: None })
     }
 }
 
@@ -78,7 +78,7 @@ impl From<Failure> for Refusal {
 ///
 /// # Errors
 /// What makes the program end with an exit status above 0, apart from results that do not keep a stated limit and are made all the same.
-pub fn call(call: Call) -> Result<Answer, Refusal> {
+pub fn call(call: Call) -> Result<Answer, Box<Refusal>> {
     let Call { mut arguments, meshes, progress } = call;
     arguments.insert(0, env!("CARGO_PKG_NAME").into());
     arguments.extend(["--json", "--quiet"].map(OsString::from));
