@@ -36,7 +36,8 @@ pub fn wall_thickness(mesh: &TriMesh, progress: &Progress) -> Result<Vec<f64>, S
         if length.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
             return Ok(f64::NAN);
         }
-        let inwards = -normal / length;
+        // Adding zero turns −0 into 0: the tree takes the two for opposite directions, and misses everything.
+        let inwards = -normal / length + Vec3A::ZERO;
         let from = (own.v0 + own.v1 + own.v2) / 3.0;
         // Past the triangle itself, by a little more than single precision.
         let ray = Ray::new(from, inwards, 2e-6, 4.0);

@@ -128,7 +128,8 @@ impl Sky {
         let d = u * direction.x + v * direction.y + point.normal * direction.z;
         let origin = point.at + point.normal * 0.6 + Vec3::Z * 0.2;
         let down = |p: Vec3| Vec3A::new(p.x, -p.y, p.z);
-        let ray = Ray::new(down(origin), down(d), 0.0, reach);
+        // Adding zero turns −0 into 0: the tree takes the two for opposite directions, and misses everything.
+        let ray = Ray::new(down(origin), down(d) + Vec3A::ZERO, 0.0, reach);
         let mut hit = RayHit::none();
         self.tree.ray_traverse(ray, &mut hit, |ray, index| {
             self.solids[self.tree.primitive_indices[index] as usize].intersect(ray)
