@@ -243,6 +243,6 @@ class Grid:
     def write(self, path: str | os.PathLike[str], *, out_format: str | None = None) -> None:
         """Writes the values as VTI, NRRD, NPY or VDB, as the name or ``out_format`` says."""
         values = np.asarray(self.values, dtype=np.float32).T
-        failed = _native.write_grid(path, values, self.origin, self.spacing, self.band, self.unit, out_format)
+        failed = _native.write_grid(path, values, (self.origin, self.spacing, self.band), self.unit, out_format)
         if failed is not None:
             raise failure(failed)

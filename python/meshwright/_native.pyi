@@ -24,9 +24,7 @@ def nearest(
 def write_grid(
     path: str | PathLike[str],
     values: NDArray[Any],
-    origin: Sequence[float],
-    spacing: float,
-    band: float | None = None,
+    lattice: tuple[Sequence[float], float, float | None],
     unit: str | None = None,
     format: str | None = None,
 ) -> str | None: ...

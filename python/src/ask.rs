@@ -31,7 +31,7 @@ pub fn read<'py>(py: Python<'py>, path: PathBuf, in_format: Option<&str>) -> PyR
         None => io::read(path),
     })?;
     match read {
-        Err(error) => failed(py, "input", &error.to_string(), error.hint().as_deref()),
+        Err(error) => failed(py, "input", &error.to_string(), error.hint()),
         Ok(loaded) => {
             let Loaded { mesh, colours, texture, unit, parts, warnings, .. } = loaded;
             let row = made::mesh(py, mesh, colours, texture, unit)?;
@@ -81,19 +81,18 @@ pub fn nearest<'py>(
     (None::<String>, (signed, places, triangles.into_pyarray(py))).into_pyobject(py)
 }
 
-/// Writes values over a lattice (planes of z, rows of y) to a file. Returns a failure or `None`.
+/// Writes values over a lattice (planes of z, rows of y; where the first lies, how far they are apart, and the band) to a file. Returns a failure or `None`.
 #[pyfunction]
-#[pyo3(signature = (path, values, origin, spacing, band=None, unit=None, format=None))]
+#[pyo3(signature = (path, values, lattice, unit=None, format=None))]
 pub fn write_grid(
     py: Python<'_>,
     path: PathBuf,
     values: PyReadonlyArray3<'_, f32>,
-    origin: [f64; 3],
-    spacing: f64,
-    band: Option<f64>,
+    lattice: ([f64; 3], f64, Option<f64>),
     unit: Option<&str>,
     format: Option<&str>,
 ) -> PyResult<Option<String>> {
+    let (origin, spacing, band) = lattice;
     let usage = |message: String| json!({ "class": "usage", "message": message }).to_string();
     let format = match format.map(str::parse::<GridFormat>).transpose() {
         Ok(format) => format.or_else(|| GridFormat::from_path(&path)),
