@@ -14,8 +14,8 @@ use super::{Run, folder, names_in, program, run_in, sample};
 /// Options that make a repair of a small mesh take a moment.
 const SLOW: &str = "--rebuild --resolution 72";
 
-/// Options that make it take far longer than any test.
-const ENDLESS: [&str; 4] = ["--resolution", "2048", "--max-memory", "200G"];
+/// Options that make it take far longer than any test; should nobody end it, it ends.
+const ENDLESS: [&str; 6] = ["--resolution", "2048", "--max-memory", "200G", "--timeout", "120s"];
 
 fn spawn(folder: &TempDir, arguments: &str) -> Child {
     let folder = folder.path().to_str().expect("a plain name");
