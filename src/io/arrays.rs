@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::error::FileError;
 use super::format::Format;
-use super::loaded::{Loaded, Part};
+use super::loaded::Loaded;
 use super::soup::Soup;
 use crate::mesh::{IndexError, TriMesh};
 
@@ -44,20 +44,6 @@ pub enum ArraysError {
 /// A triangle refers to a vertex that is not there, or none is left.
 pub fn of_triangles(positions: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Loaded, ArraysError> {
     let mesh = TriMesh::new(positions, triangles)?;
-    if !mesh.triangles.is_empty() && mesh.positions.iter().all(|p| p.is_finite()) {
-        let parts = vec![Part { name: String::new(), triangles: 0..mesh.triangles.len() }];
-        return Ok(Loaded {
-            mesh,
-            colours: None,
-            texture: None,
-            legend: Vec::new(),
-            format: Format::Obj,
-            unit: None,
-            parts,
-            negative: None,
-            warnings: Vec::new(),
-        });
-    }
     let mut soup = Soup::new();
     (soup.positions, soup.triangles) = (mesh.positions, mesh.triangles);
     Ok(soup.finish(Format::Obj, None)?)

@@ -7,6 +7,7 @@ use rustc_hash::FxHashMap;
 use super::super::scene::SceneObject;
 use super::super::text::TextOut;
 use super::palette::Palette;
+use super::pictures::write_place_group;
 
 /// What a triangle has as its property.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,16 +79,7 @@ impl<'a> Written<'a> {
             palette.write_group(text)?;
         }
         for (image, places) in &self.places {
-            text.text(&format!("<m:texture2dgroup id=\"{}\" texid=\"{image}\">\n", places.id));
-            for [u, v] in &places.list {
-                text.text("<m:tex2coord u=\"");
-                text.short_number(*u);
-                text.text("\" v=\"");
-                text.short_number(*v);
-                text.text("\"/>\n");
-                text.pass_on()?;
-            }
-            text.text("</m:texture2dgroup>\n");
+            write_place_group(places.id, image, &places.list, text)?;
         }
         Ok(())
     }

@@ -1,5 +1,7 @@
 //! Writing: the images of a package, and the places that triangles have on them.
 
+use std::fmt::Display;
+
 use rustc_hash::FxHashMap;
 
 use super::super::text::TextOut;
@@ -92,16 +94,7 @@ impl<'a> Pictures<'a> {
             ));
         }
         for (n, picture) in self.list.iter().enumerate() {
-            text.text(&format!("<m:texture2dgroup id=\"{}\" texid=\"{}\">\n", self.group(n), FIRST_NUMBER + n));
-            for [u, v] in &picture.places {
-                text.text("<m:tex2coord u=\"");
-                text.short_number(*u);
-                text.text("\" v=\"");
-                text.short_number(*v);
-                text.text("\"/>\n");
-                text.pass_on()?;
-            }
-            text.text("</m:texture2dgroup>\n");
+            write_place_group(self.group(n), FIRST_NUMBER + n, &picture.places, text)?;
         }
         Ok(())
     }
@@ -116,4 +109,24 @@ impl<'a> Pictures<'a> {
             text.integer(u64::from(entry.unwrap_or_default()));
         }
     }
+}
+
+/// The group `id` of places on the image `image`.
+pub(super) fn write_place_group(
+    id: impl Display,
+    image: impl Display,
+    places: &[[f32; 2]],
+    text: &mut TextOut<'_>,
+) -> std::io::Result<()> {
+    text.text(&format!("<m:texture2dgroup id=\"{id}\" texid=\"{image}\">\n"));
+    for [u, v] in places {
+        text.text("<m:tex2coord u=\"");
+        text.short_number(*u);
+        text.text("\" v=\"");
+        text.short_number(*v);
+        text.text("\"/>\n");
+        text.pass_on()?;
+    }
+    text.text("</m:texture2dgroup>\n");
+    Ok(())
 }
