@@ -19,7 +19,11 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 FILE = ROOT / "src" / "cli" / "licenses.txt"
 
 #: What may be linked into a program under MIT or Apache-2.0, the first of these where a crate gives the choice.
-ALLOWED = ["MIT", "Apache-2.0", "BSD-3-Clause", "BSD-2-Clause", "ISC", "Zlib", "0BSD", "Unlicense", "BSL-1.0", "CC0-1.0", "Unicode-3.0", "Apache-2.0 WITH LLVM-exception"]
+ALLOWED = ["MIT", "Apache-2.0", "BSD-3-Clause", "BSD-2-Clause", "ISC", "Zlib", "0BSD", "Unlicense", "BSL-1.0", "CC0-1.0", "Unicode-3.0", "IJG", "Apache-2.0 WITH LLVM-exception"]
+
+
+#: What is in the program beside crates.
+FONTS = [("Apache-2.0", "the font Roboto Regular (Google Inc.)")]
 
 
 def packages() -> list[dict]:
@@ -89,7 +93,9 @@ def made() -> str:
                 together.setdefault((licence, text), []).append(name)
             if not found:
                 without[licence].append(f"{name} ({', '.join(package['authors']) or package['repository'] or 'no author named'})")
-    parts = ["meshwright is built of the crates below. Each is used under the licence that is named above its text.\n"]
+    for licence, name in FONTS:
+        without[licence].append(name)
+    parts = ["meshwright is built of the crates below, and of one font. Each is used under the licence that is named above its text.\n"]
     for (licence, text), names in sorted(together.items(), key=lambda one: (one[0][0], one[1])):
         parts.append(f"{'=' * 80}\n{licence}: {', '.join(names)}\n{'=' * 80}\n{text}\n")
     for licence, names in sorted(without.items()):

@@ -176,6 +176,33 @@ pub enum EdgeChoice {
     All,
 }
 
+/// `--projection` of `render`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ProjectionChoice {
+    /// Near and far look alike, and lengths can be measured
+    Orthographic,
+    /// What is farther away looks smaller
+    Perspective,
+}
+
+/// `--background` of `render`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum BackgroundChoice {
+    /// Light grey
+    Gradient,
+    /// White
+    White,
+    /// None: the picture is clear there
+    Transparent,
+}
+
+/// `--zoom` of `render`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ZoomChoice {
+    /// The largest group of defects
+    Defects,
+}
+
 /// `--fail-on` of `inspect`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Defect {

@@ -19,7 +19,7 @@ use super::table::{self, Row};
 use super::words::{self, UnitName};
 use super::{output, page, side, target};
 use crate::compare::{CompareOptions, Comparison, Relative, compare, deviation_map};
-use crate::io::{self, Format, LegendEntry, Unit, VertexMap};
+use crate::io::{self, ColourScale, Format, LegendEntry, Unit, VertexMap};
 use crate::progress::Stage;
 
 /// `compare A B`.
@@ -34,6 +34,9 @@ pub struct CompareArgs {
     /// Write B, coloured by its signed distance from A, to this file
     #[arg(long, value_name = "FILE.ply")]
     pub map: Option<PathBuf>,
+    /// The distance that has the full colour in the map [default: what 99 of 100 vertices do not exceed]
+    #[arg(long, value_name = "LEN", requires = "map")]
+    pub map_range: Option<Length>,
     /// Points on each mesh at which distances are taken, besides all vertices
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
     pub samples: u32,
@@ -65,7 +68,7 @@ pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Res
     let limits = Limits::of(args, a, unit)?;
     report.options = json!({
         "unit": unit.map(|unit| unit.to_string()),
-        "samples": args.samples, "tolerance": limits.tolerance, "fail_on_max": limits.largest,
+        "samples": args.samples, "tolerance": limits.tolerance, "fail_on_max": limits.largest, "map_range": limits.range,
     });
     let options = CompareOptions { samples: args.samples as usize, edge_tolerance: limits.tolerance };
     let found =
@@ -77,7 +80,7 @@ pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Res
         }
     }
     if let Some(path) = &args.map {
-        let written = report.timed(Stage::Map, |_| write_map(path, a, b, unit, session))?;
+        let written = report.timed(Stage::Map, |_| write_map(path, [a, b], limits.range, unit, session))?;
         report.written(written);
     }
     let name = unit.map(|unit| unit.to_string());
@@ -105,6 +108,7 @@ pub fn run(args: &CompareArgs, session: &Session, report: &mut RunReport) -> Res
 struct Limits {
     tolerance: Option<f64>,
     largest: Option<f64>,
+    range: Option<f64>,
 }
 
 impl Limits {
@@ -117,7 +121,11 @@ impl Limits {
             Some(length) => Ok(Some(length.resolve(&scale)?)),
             None => Ok(None),
         };
-        Ok(Self { tolerance: resolved(args.tolerance)?, largest: resolved(args.fail_on_max)? })
+        let range = resolved(args.map_range)?;
+        if range.is_some_and(|range| range <= 0.0) {
+            return Err(Failure::usage("--map-range wants a length above 0"));
+        }
+        Ok(Self { tolerance: resolved(args.tolerance)?, largest: resolved(args.fail_on_max)?, range })
     }
 }
 
@@ -129,11 +137,22 @@ pub(super) fn check_map(map: &Path) -> Result<(), Failure> {
     target::check_extension(map, Format::Ply.name())
 }
 
+/// Bars of the histogram in a map.
+const BARS: usize = 61;
+
 /// Writes B with its signed distances from A.
-fn write_map(path: &Path, a: &Input, b: &Input, unit: Option<Unit>, session: &Session) -> Result<OutputEntry, Failure> {
+fn write_map(
+    path: &Path,
+    [a, b]: [&Input; 2],
+    range: Option<f64>,
+    unit: Option<Unit>,
+    session: &Session,
+) -> Result<OutputEntry, Failure> {
     let mesh = &b.loaded.mesh;
-    let map = deviation_map(mesh, &a.loaded.mesh, &session.progress)?
+    let mut map = deviation_map(mesh, &a.loaded.mesh, &session.progress)?
         .ok_or_else(|| Failure::input(format!("{}: no triangle has an area", a.label)))?;
+    let chosen = if range.is_some() { "as asked for" } else { "99th percentile" };
+    map.range = range.unwrap_or(map.range);
     let range = map.range;
     let per = unit.map_or(String::new(), |unit| format!(" {unit}"));
     let name = unit.map(|unit| unit.to_string());
@@ -146,9 +165,17 @@ fn write_map(path: &Path, a: &Input, b: &Input, unit: Option<Unit>, session: &Se
     let legend = meanings.map(|(distance, text)| LegendEntry { colour: map.colour(distance), text });
     let sentences = [
         "quality is the signed distance to the reference: negative inside it, positive outside".to_string(),
-        format!("colours: blue inside, white 0, red outside; full colour at {range}{per} (99th percentile) and beyond"),
+        format!("colours: blue inside, grey 0, red outside; full colour at {range}{per} ({chosen}) and beyond"),
     ];
-    let comments: Vec<String> = sentences.into_iter().chain(legend.iter().map(LegendEntry::to_string)).collect();
+    let scale = ColourScale {
+        title: name.map_or("distance".into(), |unit| format!("distance, {unit}")),
+        low: -range,
+        high: range,
+        stops: [-range, 0.0, range].map(|distance| map.colour(distance)).to_vec(),
+        histogram: ColourScale::count(map.distances.iter().copied(), [-range, range], BARS),
+    };
+    let comments = sentences.into_iter().chain(legend.iter().map(LegendEntry::to_string)).chain(scale.comments());
+    let comments: Vec<String> = comments.collect();
     let quality: Vec<f32> = map.distances.iter().map(|&distance| distance as f32).collect();
     let attributes = VertexMap { quality: &quality, colours: &map.colours(), comments: &comments };
     let mut bytes = Vec::new();
@@ -164,7 +191,6 @@ fn write_map(path: &Path, a: &Input, b: &Input, unit: Option<Unit>, session: &Se
     })
 }
 
-/// The table.
 /// What was measured, as rows.
 pub(super) fn rows(found: &Comparison, labels: [&str; 2], unit: UnitName<'_>) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();

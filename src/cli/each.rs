@@ -206,6 +206,7 @@ fn object_input(scene: &Scene, number: usize, report: &RunReport) -> Input {
         colours: object.colours.clone(),
         texture: object.texture.clone(),
         legend: Vec::new(),
+        scale: None,
         format: scene.format,
         unit: scene.unit,
         parts: vec![part],

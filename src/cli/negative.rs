@@ -27,6 +27,7 @@ pub fn as_operands(inputs: &mut Vec<Input>, expression: &Expression) -> Expressi
             colours: None,
             texture: None,
             legend: Vec::new(),
+            scale: None,
             format,
             unit,
             parts,

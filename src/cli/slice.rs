@@ -16,7 +16,7 @@ use super::streams;
 use super::words::{self, UnitName};
 use crate::io::{FileProblem, GridFile, Unit, read_grid_within};
 use crate::mesh::Bounds;
-use crate::picture::{Axis, Image, RenderError, SliceColours, SlicePlane, SliceSamples, sample_slice};
+use crate::picture::{Axis, Image, RenderError, SliceCaption, SliceColours, SlicePlane, SliceSamples, sample_slice};
 use crate::sdf::exact::{ExactDistance, PointSign};
 use crate::vote::WindingTree;
 
@@ -73,7 +73,7 @@ impl FromStr for SliceChoice {
 
 impl fmt::Display for SliceChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let axis = axis_name(self.axis);
+        let axis = self.axis.name();
         match self.at {
             Location::Percent(value) => write!(f, "{axis}={value}%"),
             Location::Plain(value) => write!(f, "{axis}={value}"),
@@ -82,13 +82,14 @@ impl fmt::Display for SliceChoice {
     }
 }
 
-fn axis_name(axis: Axis) -> &'static str {
-    ["x", "y", "z"][axis.number()]
-}
-
 impl SliceChoice {
-    /// The position on the axis, model units, which must lie within `bounds`.
-    fn resolve(&self, bounds: &Bounds, unit: Option<Unit>) -> Result<f64, Failure> {
+    /// The axis that the plane is perpendicular to.
+    pub fn axis(&self) -> Axis {
+        self.axis
+    }
+
+    /// The position on the axis, model units, which must lie within `bounds`. `flag` is the one that it was typed after.
+    pub fn resolve(&self, flag: &str, bounds: &Bounds, unit: Option<Unit>) -> Result<f64, Failure> {
         let k = self.axis.number();
         let [low, high] = [bounds.min[k], bounds.max[k]];
         let at = match self.at {
@@ -103,9 +104,9 @@ impl SliceChoice {
             true => Ok(at),
             false => {
                 let [from, to] = [low, high].map(words::number);
-                let name = axis_name(self.axis);
-                Err(Failure::usage(format!("--slice {self} lies outside: {name} goes from {from} to {to}"))
-                    .hint(format!("--slice {name} goes through the middle")))
+                let name = self.axis.name();
+                Err(Failure::usage(format!("{flag} {self} lies outside: {name} goes from {from} to {to}"))
+                    .hint(format!("{flag} {name} goes through the middle")))
             }
         }
     }
@@ -214,31 +215,52 @@ impl SliceEntry {
     }
 }
 
+/// How slices are turned, and what is written around them.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SliceWords<'a> {
+    /// Whether the y axis of the model points up.
+    pub y_up: bool,
+    /// Titles in the order of the slices, instead of the names of the files.
+    pub titles: &'a [String],
+    /// Whether there is no title.
+    pub plain: bool,
+}
+
 /// Draws all fields on the same plane in the same colours.
 pub fn draw(
     fields: &[Field<'_>],
     choice: &SliceChoice,
     size: [u32; 2],
+    how: &SliceWords<'_>,
     session: &Session,
 ) -> Result<Vec<(Image, SliceEntry)>, Failure> {
     let bounds = fields.iter().map(|field| field.bounds).reduce(|a, b| a.union(&b));
     let bounds = bounds.ok_or_else(|| Failure::internal("there is no field to slice"))?;
     let unit = fields.iter().find_map(|field| field.unit);
-    let at = choice.resolve(&bounds, unit)?;
-    let plane = SlicePlane::through(&bounds, choice.axis, at);
+    let at = choice.resolve("--slice", &bounds, unit)?;
+    let plane = SlicePlane::through(&bounds, choice.axis, at, how.y_up);
     let sample = |field: &Field<'_>| sample_slice(&field.value, &plane, size, &session.progress);
     let samples: Vec<SliceSamples> = fields.iter().map(sample).collect::<Result<_, _>>().map_err(failure)?;
     let colours = SliceColours::up_to(samples.iter().map(SliceSamples::farthest).fold(0.0, f64::max));
     let entry = |field: &Field<'_>, samples: &SliceSamples| SliceEntry {
         path: field.label.to_owned(),
-        axis: axis_name(choice.axis),
+        axis: choice.axis.name(),
         at,
         range: samples.range(),
         full: colours.full,
         step: colours.step,
     };
-    let drawn = fields.iter().zip(&samples).map(|(field, samples)| (samples.draw(&colours), entry(field, samples)));
-    Ok(drawn.collect())
+    let name = unit.map(|unit| unit.to_string());
+    let caption = |(n, field): (usize, &Field<'_>)| {
+        let file = Path::new(field.label).file_name().map_or(field.label.into(), |name| name.to_string_lossy());
+        let place = words::length(at, name.as_deref());
+        let own = format!("{file}, {} = {place}", choice.axis.name());
+        let title = if how.plain { String::new() } else { how.titles.get(n).cloned().unwrap_or(own) };
+        SliceCaption { title, unit: name.clone().unwrap_or_default() }
+    };
+    let captions = fields.iter().enumerate().map(caption);
+    let drawn = fields.iter().zip(&samples).zip(captions);
+    Ok(drawn.map(|((field, samples), caption)| (samples.draw(&colours, &caption), entry(field, samples))).collect())
 }
 
 /// Why there is no picture.
@@ -265,7 +287,7 @@ mod tests {
             (" x = 3 ", None, 3.0),
         ] {
             let choice: SliceChoice = text.parse().unwrap_or_else(|e| panic!("{e}"));
-            assert_eq!(choice.resolve(&bounds, unit).ok(), Some(at), "{text}");
+            assert_eq!(choice.resolve("--slice", &bounds, unit).ok(), Some(at), "{text}");
             assert_eq!(choice.to_string().parse(), Ok(choice));
         }
         for text in ["", "w", "z=", "z=a", "z=1h", "z=nan", "1", "z=1=2"] {
@@ -273,7 +295,7 @@ mod tests {
         }
         for text in ["x=5", "x=-1%", "y=1mm"] {
             let choice: SliceChoice = text.parse().expect("it can be read");
-            assert!(choice.resolve(&bounds, None).is_err(), "{text}");
+            assert!(choice.resolve("--slice", &bounds, None).is_err(), "{text}");
         }
         assert_eq!(SliceChoice::default().to_string(), "z=50%");
     }

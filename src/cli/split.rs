@@ -200,6 +200,7 @@ fn part_of(loaded: &Loaded, triangles: &[u32]) -> Loaded {
         texture: loaded.texture.as_ref().map(|texture| texture.picked(triangles)),
         negative: None,
         legend: Vec::new(),
+        scale: None,
         warnings: Vec::new(),
     }
 }

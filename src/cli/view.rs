@@ -16,7 +16,7 @@ use super::result::RunResult;
 use super::serve::Served;
 use super::session::Session;
 use super::shared_args::{CommonArgs, InputArgs};
-use super::slice::{self, Field, SliceChoice};
+use super::slice::{self, Field, SliceChoice, SliceWords};
 use super::{side, streams, target};
 use crate::progress::{Stage, Stopped};
 
@@ -93,7 +93,7 @@ fn slices(given: &Given, args: &ViewArgs, session: &Session) -> Result<Vec<(Vec<
     if fields.is_empty() {
         return Ok(Vec::new());
     }
-    let drawn = slice::draw(&fields, &args.slice.unwrap_or_default(), SLICE, session)?;
+    let drawn = slice::draw(&fields, &args.slice.unwrap_or_default(), SLICE, &SliceWords::default(), session)?;
     let encoded = drawn.into_iter().map(|(image, entry)| {
         let png = image.to_png().map_err(|e| Failure::internal(format!("the picture cannot be encoded: {e}")))?;
         Ok((png, entry.words(given.unit_of(&entry.path).as_deref())))

@@ -10,9 +10,9 @@ use crate::progress::{Progress, Stage, Stopped};
 /// Points that one thread searches before it looks whether it should stop.
 const CHUNK: usize = 1 << 12;
 
-/// Colours of far inside, on the surface, and far outside.
+/// Colours of far inside, on the surface, and far outside. Grey in the middle stands out from the paper.
 const INSIDE: [f64; 3] = [33.0, 90.0, 200.0];
-const ON: [f64; 3] = [255.0, 255.0, 255.0];
+const ON: [f64; 3] = [206.0, 208.0, 211.0];
 const OUTSIDE: [f64; 3] = [200.0, 30.0, 40.0];
 
 /// How far each vertex of one mesh is from another mesh.
@@ -26,7 +26,7 @@ pub struct DeviationMap {
 }
 
 impl DeviationMap {
-    /// Red, green and blue of each vertex: blue inside the reference, white on it, red outside.
+    /// Red, green and blue of each vertex: blue inside the reference, light grey on it, red outside.
     pub fn colours(&self) -> Vec<[u8; 3]> {
         self.distances.iter().map(|&distance| self.colour(distance)).collect()
     }
@@ -37,7 +37,7 @@ impl DeviationMap {
     }
 }
 
-/// Linear from white at 0 to the full colour at ±`range`.
+/// Linear from grey at 0 to the full colour at ±`range`.
 fn colour(distance: f64, range: f64) -> [u8; 3] {
     let strength = if range > 0.0 { (distance.abs() / range).min(1.0) } else { 0.0 };
     let full = if distance < 0.0 { INSIDE } else { OUTSIDE };
@@ -85,12 +85,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_go_from_blue_over_white_to_red() {
+    fn colours_go_from_blue_over_grey_to_red() {
         assert_eq!(
             [-9.0, -1.0, 0.0, 1.0, 9.0].map(|d| colour(d, 1.0)),
-            [[33, 90, 200], [33, 90, 200], [255, 255, 255], [200, 30, 40], [200, 30, 40]]
+            [[33, 90, 200], [33, 90, 200], [206, 208, 211], [200, 30, 40], [200, 30, 40]]
         );
-        assert_eq!(colour(0.5, 1.0), [228, 143, 148]);
-        assert_eq!(colour(0.0, 0.0), [255, 255, 255]);
+        assert_eq!(colour(0.5, 1.0), [203, 119, 126]);
+        assert_eq!(colour(0.0, 0.0), [206, 208, 211]);
     }
 }

@@ -8,6 +8,11 @@ const MOST_ENTRIES: usize = 16;
 /// Characters of an entry that are read.
 const LONGEST_TEXT: usize = 60;
 
+/// The first letters of a text that goes into a picture and onto a terminal.
+pub(super) fn plain_text(text: &[u8], most: usize) -> String {
+    text.trim_ascii().iter().map(|&byte| char::from(byte)).filter(|c| matches!(c, ' '..='~')).take(most).collect()
+}
+
 /// A colour of a map and what it means. As text it is the comment that the reader of PLY knows: `legend #RRGGBB text`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LegendEntry {
@@ -34,9 +39,7 @@ impl LegendEntry {
             let [high, low] = [pair[0], pair[1]].map(|digit| char::from(digit).to_digit(16));
             *channel = (16 * high? + low?) as u8;
         }
-        // It goes into a picture and onto a terminal.
-        let plain = text.trim_ascii().iter().map(|&byte| char::from(byte)).filter(|c| matches!(c, ' '..='~'));
-        let text: String = plain.take(LONGEST_TEXT).collect();
+        let text = plain_text(text, LONGEST_TEXT);
         (!text.is_empty()).then_some(Self { colour, text })
     }
 

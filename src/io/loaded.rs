@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::colour::Colours;
+use super::colour_scale::ColourScale;
 use super::format::Format;
 use super::legend::LegendEntry;
 use super::paint::Paint;
@@ -41,6 +42,8 @@ pub struct Loaded {
     pub texture: Option<TextureMap>,
     /// What the file says that its colours mean: the legend of a map in PLY.
     pub legend: Vec<LegendEntry>,
+    /// What the file says of measured values that its colours stand for: the scale of a map of distances in PLY.
+    pub scale: Option<ColourScale>,
     /// The format that was found.
     pub format: Format,
     /// The unit of length that the file states.

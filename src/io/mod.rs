@@ -30,6 +30,7 @@
 
 mod arrays;
 mod colour;
+mod colour_scale;
 mod detect;
 pub(crate) mod draft;
 mod encoding;
@@ -65,6 +66,7 @@ mod writing;
 pub use arrays::{ArraysError, of_polygons, of_triangles};
 pub(crate) use colour::linear_from_srgb;
 pub use colour::{Carried, Colours, Rgba};
+pub use colour_scale::ColourScale;
 pub use error::{FileError, FileProblem, Location, Wanted, WriteError, WriteProblem};
 pub use file_format::{FileFormat, UnknownFileFormat};
 pub use format::{Format, UnknownFormat};

@@ -147,6 +147,7 @@ impl Soup {
             colours,
             texture,
             legend: Vec::new(),
+            scale: None,
             format,
             unit,
             parts: self.parts,

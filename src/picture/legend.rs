@@ -1,110 +1,139 @@
-//! A legend in a corner of a picture: patches of colour and what they mean.
+//! What colours mean: patches of colour beside words.
 
-use super::digits;
 use super::image::Image;
+use super::subject::DefectCounts;
+use super::text::{Anchor, Pen};
+use crate::digits::count;
 use crate::io::LegendEntry;
 
-/// Dots of the font between what stands beside each other, and around all.
-const GAP: u32 = 3;
-/// A patch is so wide and high, dots.
-const PATCH: u32 = 9;
-/// The picture has a dot of one more pixel for every so many pixels of its height.
-const PIXELS_PER_DOT: u32 = 360;
-/// At most this part of the width and height of the picture is for the legend.
-const MOST: f64 = 0.75;
+/// The colours of defects in a picture, sRGB: open edges, edges of more than two triangles, triangles that intersect others, lines along which they cross, inner
+/// sides.
+pub const DEFECT_COLOURS: [[u8; 3]; 5] = [[237, 0, 39], [230, 0, 206], [255, 211, 0], [0, 48, 220], [212, 101, 63]];
 
-/// Draws a legend on white, as large as suits the picture, in the corner where it hides least, or in the lower left one if all corners hide
-/// the same. Nothing is drawn where there is no room for letters of one pixel a dot.
-pub fn draw_legend(image: &mut Image, entries: &[LegendEntry]) {
-    let longest = entries.iter().map(|entry| digits::size(&entry.text, 1)[0]).max().unwrap_or(0);
-    let [across, down] = [3 * GAP + PATCH + longest, GAP + (PATCH + GAP) * entries.len() as u32];
-    let fits = |scale: u32| {
-        f64::from(across * scale) <= MOST * f64::from(image.width)
-            && f64::from(down * scale) <= MOST * f64::from(image.height)
+/// The colour of outer sides, sRGB.
+const OUTER: [u8; 3] = [190, 203, 217];
+
+/// The entries for what is wrong with a mesh, with how many there are of each; where nothing is, one that says so.
+pub fn defect_legend(found: &DefectCounts) -> Vec<LegendEntry> {
+    let number = |n: usize, one: &str, many: &str| match n {
+        1 => format!("1 {one}"),
+        n => format!("{} {many}", count(n)),
     };
-    let largest = (image.height / PIXELS_PER_DOT).max(1);
-    let Some(scale) = (1..=largest).rev().find(|&scale| fits(scale)).filter(|_| !entries.is_empty()) else { return };
-    let size = [across * scale, down * scale];
-    let [right, low] = [image.width - size[0], image.height - size[1]];
-    let corners = [[0, low], [right, low], [0, 0], [right, 0]];
-    let Some([left, top]) = corners.into_iter().min_by_key(|&corner| hidden(image, corner, size)) else { return };
-    fill(image, [left, top], size, [255; 4]);
-    for (n, entry) in (0..).zip(entries) {
-        let row = top + (GAP + n * (PATCH + GAP)) * scale;
-        let [red, green, blue] = entry.colour;
-        // A thin frame, for white on white.
-        fill(image, [left + GAP * scale, row], [PATCH * scale; 2], [120, 124, 130, 255]);
-        let inner = [left + GAP * scale + 1, row + 1];
-        fill(image, inner, [PATCH * scale - 2; 2], [red, green, blue, 255]);
-        // The letters are lower than the patch.
-        digits::draw(image, &entry.text, [left + (2 * GAP + PATCH) * scale, row + scale], scale);
+    let [open, crowded, crossing, curve, inside] = DEFECT_COLOURS;
+    let all = [
+        (found.open_edges > 0, open, number(found.open_edges, "open edge", "open edges")),
+        (
+            found.crowded_edges > 0,
+            crowded,
+            number(found.crowded_edges, "edge of more than two triangles", "edges of more than two triangles"),
+        ),
+        (
+            found.crossing_triangles > 0,
+            crossing,
+            number(found.crossing_triangles, "crossing triangle", "crossing triangles"),
+        ),
+        (found.crossing_triangles > 0, curve, "where they cross".into()),
+        (found.shows_inside, inside, "inner sides".into()),
+    ];
+    let entry = |colour, text| LegendEntry { colour, text };
+    match *found == DefectCounts::default() {
+        true => vec![entry(OUTER, "closed, and nothing crosses".into())],
+        false => all.into_iter().filter(|(there, ..)| *there).map(|(_, colour, text)| entry(colour, text)).collect(),
     }
 }
 
-/// How many pixels there are not white.
-fn hidden(image: &Image, [left, top]: [u32; 2], [across, down]: [u32; 2]) -> usize {
-    let places = (top..top + down).flat_map(|y| (left..left + across).map(move |x| [x, y]));
-    places.filter(|&[x, y]| image.pixel(x, y) != Some([255; 4])).count()
+/// Entries in lines of a width.
+pub(super) struct LegendLines<'a> {
+    /// Each entry with the line that it is on, and where on it it begins, pixels.
+    entries: Vec<(&'a LegendEntry, u32, f32)>,
 }
 
-fn fill(image: &mut Image, [left, top]: [u32; 2], [across, down]: [u32; 2], colour: [u8; 4]) {
-    for y in top..top + down {
-        (left..left + across).for_each(|x| image.set(x, y, colour));
+/// The side of a patch, and what is free after it and after each entry, parts of the letters' size.
+const PATCH: f32 = 0.78;
+const AFTER_PATCH: f32 = 0.40;
+const AFTER_ENTRY: f32 = 1.30;
+/// From one line to the next.
+pub(super) const LINE: f32 = 1.45;
+
+impl<'a> LegendLines<'a> {
+    pub(super) fn new(entries: &'a [LegendEntry], pen: &Pen, width: f32) -> Self {
+        let (mut line, mut at) = (0, 0.0);
+        let mut placed = Vec::new();
+        for entry in entries {
+            let wide = (PATCH + AFTER_PATCH) * pen.size + pen.width(&entry.text);
+            if at > 0.0 && at + wide > width {
+                (line, at) = (line + 1, 0.0);
+            }
+            placed.push((entry, line, at));
+            at += wide + AFTER_ENTRY * pen.size;
+        }
+        Self { entries: placed }
+    }
+
+    /// How many lines there are.
+    pub(super) fn count(&self) -> u32 {
+        self.entries.last().map_or(0, |&(_, line, _)| line + 1)
+    }
+
+    /// Draws the entries, the first line around the height `top` + half a line.
+    pub(super) fn draw(&self, image: &mut Image, pen: &Pen, [left, top]: [f32; 2], width: f32) {
+        let side = (PATCH * pen.size).round();
+        for &(entry, line, at) in &self.entries {
+            let middle = top + (line as f32 + 0.5) * LINE * pen.size;
+            let corner = [left + at, middle - side / 2.0].map(|x| x.round().max(0.0) as u32);
+            // A thin frame, for light on light.
+            image.fill(corner, [side as u32; 2], [110, 114, 120]);
+            image.fill(corner.map(|x| x + 1), [(side as u32).saturating_sub(2); 2], entry.colour);
+            let from = left + at + side + AFTER_PATCH * pen.size;
+            let text = pen.shortened(&entry.text, width - (from - left));
+            pen.draw(image, &text, [from, middle], Anchor::Left);
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::eyes::{EYES, apart};
 
-    fn entries() -> Vec<LegendEntry> {
-        let entry = |colour, text: &str| LegendEntry { colour, text: text.into() };
-        vec![entry([200, 10, 10], "one"), entry([10, 200, 10], "a longer one")]
-    }
-
-    fn grey(width: u32, height: u32) -> Image {
-        Image { width, height, rgba: [90, 90, 90, 255].repeat((width * height) as usize) }
+    fn entry(colour: [u8; 3], text: &str) -> LegendEntry {
+        LegendEntry { colour, text: text.into() }
     }
 
     #[test]
-    fn patches_stand_in_order_beside_their_words() {
-        for scale in [1, 2, 3] {
-            let mut image = grey(480 * scale, 360 * scale);
-            draw_legend(&mut image, &entries());
-            let from_below =
-                |dots: u32| image.pixel((GAP + 4) * scale, image.height - 1 - dots * scale).expect("there");
-            assert_eq!(from_below(GAP + 4)[..3], [10, 200, 10]);
-            assert_eq!(from_below(2 * GAP + PATCH + 4)[..3], [200, 10, 10]);
-            let ink = image.rgba.chunks(4).filter(|pixel| pixel[..3] == [30, 32, 38]).count() as u32;
-            let lit = |c: char| super::super::letters::dots(c).map(u8::count_ones).iter().sum::<u32>();
-            assert_eq!(ink, "onea longer one".chars().map(lit).sum::<u32>() * scale * scale);
-            // Only the corner is taken.
-            assert_eq!(image.pixel(image.width - 1, image.height - 1), Some([90, 90, 90, 255]));
+    fn entries_wrap_and_stay_in_their_order() {
+        let entries =
+            [entry([200, 10, 10], "one"), entry([10, 200, 10], "a longer one"), entry([10, 10, 200], "three")];
+        let pen = Pen::new(16.0);
+        assert_eq!(LegendLines::new(&entries, &pen, 1000.0).count(), 1);
+        assert_eq!(LegendLines::new(&entries, &pen, 10.0).count(), 3);
+        assert_eq!(LegendLines::new(&[], &pen, 10.0).count(), 0);
+        let mut image = Image { width: 300, height: 100, rgba: vec![255; 120_000] };
+        LegendLines::new(&entries, &pen, 10.0).draw(&mut image, &pen, [5.0, 4.0], 290.0);
+        for (line, entry) in entries.iter().enumerate() {
+            let middle = 4.0 + (line as f32 + 0.5) * LINE * 16.0;
+            let [r, g, b] = entry.colour;
+            assert_eq!(image.pixel(11, middle as u32), Some([r, g, b, 255]), "{line}");
         }
     }
 
     #[test]
-    fn the_corner_that_is_free_is_taken() {
-        let [width, height] = [480, 360];
-        for free in [[0, 0], [width - 150, 0], [0, height - 40], [width - 150, height - 40]] {
-            let mut image = grey(width, height);
-            fill(&mut image, free, [150, 40], [255; 4]);
-            let before = image.clone();
-            draw_legend(&mut image, &entries());
-            let changed = |x: u32, y: u32| image.pixel(x, y) != before.pixel(x, y);
-            let inside = |x: u32, y: u32| (free[0]..free[0] + 150).contains(&x) && (free[1]..free[1] + 40).contains(&y);
-            let cells = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-            assert!(cells().all(|(x, y)| !changed(x, y) || inside(x, y)), "{free:?}");
-            assert!(cells().any(|(x, y)| changed(x, y)));
+    fn every_eye_tells_the_defects_apart() {
+        for eye in &EYES {
+            for (i, a) in DEFECT_COLOURS.iter().enumerate() {
+                for (j, b) in DEFECT_COLOURS.iter().enumerate().take(i) {
+                    assert!(apart(*a, *b, eye) > 10.0, "{i} and {j} are {} apart for {eye:?}", apart(*a, *b, eye));
+                }
+            }
         }
     }
 
     #[test]
-    fn small_pictures_and_empty_legends_stay_as_they_are() {
-        for (mut image, entries) in [(grey(60, 200), entries()), (grey(300, 20), entries()), (grey(300, 300), vec![])] {
-            let before = image.clone();
-            draw_legend(&mut image, &entries);
-            assert_eq!(image, before);
-        }
+    fn only_what_is_there_is_told_and_how_often() {
+        let nothing = defect_legend(&DefectCounts::default());
+        assert!(nothing.len() == 1 && nothing[0].text == "closed, and nothing crosses", "{nothing:?}");
+        let found = DefectCounts { open_edges: 1, crossing_triangles: 1234, shows_inside: true, ..Default::default() };
+        let texts: Vec<String> = defect_legend(&found).into_iter().map(|entry| entry.text).collect();
+        assert_eq!(texts, ["1 open edge", "1,234 crossing triangles", "where they cross", "inner sides"]);
     }
 }

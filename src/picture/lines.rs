@@ -7,7 +7,7 @@ use glam::Vec2;
 use super::line::Line;
 use super::rgb::PixelSample;
 use super::scene::Scene;
-use super::sight::Sight;
+use super::sight::{On, Sight};
 
 /// Lines by the bands of pixel rows that they touch.
 pub(super) struct LinesByBand(Vec<Vec<u32>>);
@@ -26,14 +26,22 @@ impl LinesByBand {
     }
 
     /// Draws the lines of band number `band`, the pixel rows `rows`, over its samples.
-    pub(super) fn draw(&self, band: usize, scene: &Scene, seen: &Sight, rows: Range<usize>, out: &mut [PixelSample]) {
+    /// `behind`: how much of a line is seen through what hides it, 0 to 1.
+    pub(super) fn draw(
+        &self,
+        band: usize,
+        (scene, seen): (&Scene, &Sight),
+        rows: Range<usize>,
+        behind: f32,
+        out: &mut [PixelSample],
+    ) {
         for &id in &self.0[band] {
-            draw_line(&scene.lines[id as usize], scene, seen, &rows, out);
+            draw_line(&scene.lines[id as usize], (scene, seen), &rows, behind, out);
         }
     }
 }
 
-fn draw_line(line: &Line, scene: &Scene, seen: &Sight, rows: &Range<usize>, out: &mut [PixelSample]) {
+fn draw_line(line: &Line, (scene, seen): (&Scene, &Sight), rows: &Range<usize>, behind: f32, out: &mut [PixelSample]) {
     let (colour, opacity, width) = line.style.pen();
     let samples = seen.samples as f32;
     // Lines fade out over a sample's width.
@@ -50,8 +58,10 @@ fn draw_line(line: &Line, scene: &Scene, seen: &Sight, rows: &Range<usize>, out:
             let (distance, along) = distance(a, b, Vec2::new(x, y));
             let cover = ((reach - distance) / (2.0 * fade)).clamp(0.0, 1.0);
             let z = line.ends[0].z + along * (line.ends[1].z - line.ends[0].z);
-            if cover > 0.0 && !is_hidden(scene, seen, row, column, z, distance) {
-                out[(row - first) * seen.columns() + column].cover(colour, opacity * cover);
+            if cover > 0.0 {
+                let hidden = is_hidden(scene, seen, row, column, z, distance);
+                let share = if hidden { behind } else { 1.0 };
+                out[(row - first) * seen.columns() + column].cover(colour, opacity * cover * share);
             }
         }
     }
@@ -83,7 +93,9 @@ fn distance(a: Vec2, b: Vec2, p: Vec2) -> (f32, f32) {
 fn is_hidden(scene: &Scene, seen: &Sight, row: usize, column: usize, z: f32, distance: f32) -> bool {
     let Some(hit) = seen.hit(row, column) else { return false };
     // A surface through the line rises towards the viewer by its slope, up to the sample.
-    let n = scene.flat[hit.triangle as usize];
-    let slope = Vec2::new(n.x, n.y).length() / n.z.abs().max(0.12);
+    let slope = match hit.on() {
+        On::Triangle(t) => scene.slope[t],
+        On::Cut => 0.0,
+    };
     hit.z > z + 0.75 + slope * (distance + 0.25)
 }

@@ -56,7 +56,7 @@ pub(super) fn occlusion(scene: &Scene, seen: &Sight, progress: &Progress) -> Res
     Ok(averaged(&raw, &points, seen.size))
 }
 
-/// A visible point: position (pixels, y up) and normal on the viewer's side.
+/// A visible point: position (pixels without perspective, y up) and normal on the viewer's side.
 #[derive(Debug, Clone, Copy)]
 struct Point {
     at: Vec3,
@@ -67,8 +67,7 @@ fn surface_point(scene: &Scene, seen: &Sight, row: usize, column: usize) -> Opti
     let k = seen.samples;
     let samples = (0..k * k).map(|i| (row * k + i / k, column * k + i % k));
     let (hit, [x, y]) = samples.filter_map(|(r, c)| seen.hit(r, c).map(|hit| (hit, seen.position(r, c)))).next()?;
-    let (normal, _) = normal_at(scene, hit.triangle as usize, x, y);
-    Some(Point { at: Vec3::new(x, -y, hit.z), normal })
+    Some(Point { at: scene.camera.space(Vec3::new(x, y, hit.z)), normal: normal_at(scene, hit, x, y) })
 }
 
 /// Directions about +z, cosine-weighted, spread evenly within each pixel of a tile and over the tile.
@@ -113,13 +112,20 @@ fn averaged(raw: &[f32], points: &[Option<Point>], [width, height]: [usize; 2]) 
 struct Sky {
     tree: CwBvh,
     solids: Vec<Triangle>,
+    /// Towards what is cut away, and where that begins.
+    cut: Option<(Vec3A, f32)>,
 }
 
 impl Sky {
     fn new(scene: &Scene) -> Self {
-        let solid = |c: &[Vec3; 3]| Triangle { v0: Vec3A::from(c[0]), v1: Vec3A::from(c[1]), v2: Vec3A::from(c[2]) };
+        let corner = |p: Vec3| Vec3A::from(scene.camera.space(p));
+        let solid = |c: &[Vec3; 3]| Triangle { v0: corner(c[0]), v1: corner(c[1]), v2: corner(c[2]) };
         let solids: Vec<Triangle> = scene.obstacles.iter().map(|&t| solid(&scene.corners[t as usize])).collect();
-        Self { tree: tree_over(&solids), solids }
+        let cut = scene.cut.map(|cut| {
+            let (normal, at) = cut.in_space();
+            (Vec3A::from(normal), at)
+        });
+        Self { tree: tree_over(&solids), solids, cut }
     }
 
     /// 1 for a ray that is blocked at once, falling to 0 at `reach`.
@@ -127,12 +133,13 @@ impl Sky {
         let (u, v) = point.normal.any_orthonormal_pair();
         let d = u * direction.x + v * direction.y + point.normal * direction.z;
         let origin = point.at + point.normal * 0.6 + Vec3::Z * 0.2;
-        let down = |p: Vec3| Vec3A::new(p.x, -p.y, p.z);
         // Adding zero turns −0 into 0: the tree takes the two for opposite directions, and misses everything.
-        let ray = Ray::new(down(origin), down(d) + Vec3A::ZERO, 0.0, reach);
+        let ray = Ray::new(Vec3A::from(origin), Vec3A::from(d) + Vec3A::ZERO, 0.0, reach);
         let mut hit = RayHit::none();
         self.tree.ray_traverse(ray, &mut hit, |ray, index| {
-            self.solids[self.tree.primitive_indices[index] as usize].intersect(ray)
+            let t = self.solids[self.tree.primitive_indices[index] as usize].intersect(ray);
+            let gone = self.cut.is_some_and(|(normal, at)| normal.dot(ray.origin + ray.direction * t) > at);
+            if gone { f32::INFINITY } else { t }
         });
         if hit.t < reach { (1.0 - hit.t / reach).powi(2) } else { 0.0 }
     }

@@ -1,8 +1,9 @@
 //! What is drawn, and how.
 
-use super::camera::View;
+use super::camera::{Projection, View};
+use super::slice::Axis;
 use crate::io::Colours;
-use crate::mesh::TriMesh;
+use crate::mesh::{Bounds, TriMesh};
 use crate::progress::Stopped;
 
 /// The most pixels along a side of an image, before supersampling.
@@ -19,7 +20,8 @@ pub(super) const BAND: usize = 16;
 pub enum EdgeDrawing {
     /// No edges.
     None,
-    /// Edges whose triangles are more than 30 degrees apart, and those without exactly two triangles.
+    /// Edges whose triangles are more than 30 degrees apart, and those without exactly two triangles, where they hang together over a length that can be
+    /// seen; and the outline.
     #[default]
     Sharp,
     /// All edges, faint where triangles are small, and the sharp ones as above.
@@ -29,11 +31,23 @@ pub enum EdgeDrawing {
 /// What is seen where the mesh is not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Background {
-    /// White, opaque.
+    /// Light grey, a little darker below, so that white parts stand out.
     #[default]
+    Gradient,
+    /// White, opaque.
     White,
     /// Nothing: pixels with alpha 0.
     Transparent,
+}
+
+/// A plane perpendicular to an axis, on the viewer's side of which nothing is drawn. Where that cuts through the inside of a mesh without open
+/// edges, the cut is hatched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clip {
+    /// The axis that the plane is perpendicular to.
+    pub axis: Axis,
+    /// Where on this axis the plane lies, model units. In a view along the plane what lies beyond goes.
+    pub at: f64,
 }
 
 /// Options of [`render`](super::render) and [`render_pair`](super::render_pair).
@@ -45,6 +59,14 @@ pub struct RenderOptions {
     pub height: u32,
     /// From where the mesh is seen.
     pub view: View,
+    /// Whether what is farther away looks smaller.
+    pub projection: Projection,
+    /// A box that fills the picture, model units, instead of the whole mesh.
+    pub focus: Option<Bounds>,
+    /// What is cut away.
+    pub clip: Option<Clip>,
+    /// How much a surface hides of what is behind it: 1 all of it, at least 0.05. Up to six surfaces shine through.
+    pub opacity: f32,
     /// Which edges are drawn.
     pub edges: EdgeDrawing,
     /// Whether defects are coloured: open edges red, edges with more than two triangles magenta, triangles that
@@ -64,11 +86,15 @@ impl Default for RenderOptions {
             width: 1024,
             height: 768,
             view: View::ISO,
+            projection: Projection::Orthographic,
+            focus: None,
+            clip: None,
+            opacity: 1.0,
             edges: EdgeDrawing::Sharp,
             defects: false,
             supersampling: 2,
             occlusion: true,
-            background: Background::White,
+            background: Background::Gradient,
         }
     }
 }
@@ -103,18 +129,20 @@ pub struct Painted<'a> {
     pub mesh: &'a TriMesh,
     /// The colours of its front sides, of which alpha does not count; `None` for grey.
     pub colours: Option<&'a Colours>,
+    /// Whether the colours mean something that a legend explains: then shade changes them little.
+    pub is_map: bool,
 }
 
 impl<'a> From<&'a TriMesh> for Painted<'a> {
     fn from(mesh: &'a TriMesh) -> Self {
-        Self { mesh, colours: None }
+        Self { mesh, colours: None, is_map: false }
     }
 }
 
-/// Refuses sizes of images that cannot be made.
-pub(super) fn check_size([width, height]: [u32; 2], supersampling: u32) -> Result<(), RenderError> {
+/// Refuses sizes of images that cannot be made. `layers`: what is seen in each sample, one behind the other.
+pub(super) fn check_size([width, height]: [u32; 2], supersampling: u32, layers: u32) -> Result<(), RenderError> {
     let side = 1..=MAX_SIDE;
-    let samples = u64::from(width) * u64::from(height) * u64::from(supersampling.min(9)).pow(2);
+    let samples = u64::from(width) * u64::from(height) * u64::from(supersampling.min(9)).pow(2) * u64::from(layers);
     let small = samples <= MAX_SAMPLES;
     if !side.contains(&width) || !side.contains(&height) || !(1..=8).contains(&supersampling) || !small {
         return Err(RenderError::Size { width, height, supersampling });

@@ -8,12 +8,34 @@ use crate::progress::{Progress, Stopped};
 
 /// No triangle.
 const NONE: u32 = u32::MAX;
+/// The hatched inside of a mesh that is cut.
+const CUT: u32 = u32::MAX - 1;
 
 /// A visible point: triangle and its depth, pixels towards the viewer.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Visible {
-    pub(super) triangle: u32,
+    triangle: u32,
     pub(super) z: f32,
+}
+
+/// On what a visible point lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum On {
+    /// A triangle.
+    Triangle(usize),
+    /// The hatched inside of a mesh that is cut.
+    Cut,
+}
+
+impl Visible {
+    pub(super) fn on(&self) -> On {
+        if self.triangle == CUT { On::Cut } else { On::Triangle(self.triangle as usize) }
+    }
+
+    /// Whether another point with this one's column and row lies behind it, or is of a later triangle in the same place.
+    fn is_before(&self, triangle: u32, z: f32) -> bool {
+        self.triangle != NONE && (z < self.z || z == self.z && self.triangle != CUT && triangle > self.triangle)
+    }
 }
 
 /// The hits of all samples, row by row.
@@ -46,9 +68,15 @@ fn centre(samples: usize, row: usize, column: usize) -> [f32; 2] {
     [column, row].map(|k| (k as f32 + 0.5) / samples as f32)
 }
 
-/// Finds the nearest triangle at each sample, of triangles at the same depth the first one. With parallel view a depth
-/// buffer is several times faster than rays, above all where long thin triangles crowd.
-pub(super) fn sight(scene: &Scene, size: [usize; 2], samples: usize, progress: &Progress) -> Result<Sight, Stopped> {
+/// Finds the nearest triangle at each sample, of triangles at the same depth the first one; of those behind `front` where that is given. With straight
+/// lines on the image a depth buffer is several times faster than rays, above all where long thin triangles crowd.
+pub(super) fn sight(
+    scene: &Scene,
+    size: [usize; 2],
+    samples: usize,
+    front: Option<&Sight>,
+    progress: &Progress,
+) -> Result<Sight, Stopped> {
     let columns = size[0] * samples;
     let mut hits = vec![Visible { triangle: NONE, z: f32::NEG_INFINITY }; columns * size[1] * samples];
     let bands = by_band(scene, samples, size[1] * samples);
@@ -59,12 +87,41 @@ pub(super) fn sight(scene: &Scene, size: [usize; 2], samples: usize, progress: &
             let corners = &scene.corners[triangle as usize];
             let Some((from, to)) = row_range(corners, samples) else { continue };
             for row in from.max(band * BAND)..to.min(band * BAND + rows.len()) {
-                fill(rows[row - band * BAND], triangle, corners, samples, row);
+                let ahead = front.map(|front| &front.hits[row * columns..][..columns]);
+                let counts = |column: usize, x: f32, y: f32, z: f32| {
+                    ahead.is_none_or(|ahead| ahead[column].is_before(triangle, z))
+                        && scene.cut.is_none_or(|cut| cut.keeps(Vec3::new(x, y, z)))
+                };
+                fill(rows[row - band * BAND], triangle, corners, samples, row, counts);
             }
+        }
+        for (n, row) in rows.iter_mut().enumerate() {
+            cut_inside(
+                scene,
+                row,
+                samples,
+                band * BAND + n,
+                front.map(|front| &front.hits[(band * BAND + n) * columns..]),
+            );
         }
         Ok(())
     })?;
     Ok(Sight { hits, size, samples })
+}
+
+/// Where a cut is in front of an inner side, what is seen first is the inside of the mesh, cut through.
+fn cut_inside(scene: &Scene, row: &mut [Visible], samples: usize, number: usize, front: Option<&[Visible]>) {
+    let Some(cut) = scene.cut.filter(|_| scene.hatched) else { return };
+    for (column, hit) in row.iter_mut().enumerate() {
+        let inner = hit.triangle != NONE && !scene.facing[hit.triangle as usize];
+        let first = front.is_none_or(|front| front[column].triangle == NONE);
+        if inner && first {
+            let [x, y] = centre(samples, number, column);
+            if let Some(z) = cut.depth(x, y).filter(|&z| z >= hit.z) {
+                *hit = Visible { triangle: CUT, z };
+            }
+        }
+    }
 }
 
 /// Rows of samples that one thread fills at a time.
@@ -88,8 +145,15 @@ fn row_range(corners: &[Vec3; 3], samples: usize) -> Option<(usize, usize)> {
     (bottom >= 0.0).then_some(((top - 1.0).max(0.0) as usize, (bottom + 1.0) as usize + 1))
 }
 
-/// Puts a triangle into one row of samples, where it is the nearest so far.
-fn fill(out: &mut [Visible], triangle: u32, corners: &[Vec3; 3], samples: usize, row: usize) {
+/// Puts a triangle into one row of samples, where it is the nearest so far and `counts`: column, x, y and depth.
+fn fill(
+    out: &mut [Visible],
+    triangle: u32,
+    corners: &[Vec3; 3],
+    samples: usize,
+    row: usize,
+    counts: impl Fn(usize, f32, f32, f32) -> bool,
+) {
     let [_, y] = centre(samples, row, 0);
     let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
     for k in 0..3 {
@@ -109,7 +173,7 @@ fn fill(out: &mut [Visible], triangle: u32, corners: &[Vec3; 3], samples: usize,
     let to = ((high * samples as f32 + 1.5).max(0.0) as usize).min(out.len());
     for (column, hit) in (from..).zip(&mut out[from..to.max(from)]) {
         let [x, y] = centre(samples, row, column);
-        if let Some(z) = depth(corners, x, y).filter(|&z| z > hit.z) {
+        if let Some(z) = depth(corners, x, y).filter(|&z| z > hit.z && counts(column, x, y, z)) {
             *hit = Visible { triangle, z };
         }
     }

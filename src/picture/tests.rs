@@ -57,7 +57,10 @@ fn front_sides_have_their_colours_back_sides_do_not() {
     let blue = Colours::Faces(vec![[20, 40, 230, 255]; mesh.triangles.len()]);
     let is_blue = |[r, g, b, a]: [u8; 4]| a > 0 && b / 2 > r && b / 2 > g;
     let of = |colours: Option<&Colours>, view| {
-        count(&render(Painted { mesh: &mesh, colours }, &plain(view), &Progress::none()).unwrap(), is_blue)
+        count(
+            &render(Painted { mesh: &mesh, colours, is_map: false }, &plain(view), &Progress::none()).unwrap(),
+            is_blue,
+        )
     };
     assert!(of(Some(&blue), View::BACK) > 15_000 && of(None, View::BACK) == 0);
     assert_eq!(of(Some(&blue), View::FRONT), 0, "only inner sides are seen");
@@ -65,7 +68,8 @@ fn front_sides_have_their_colours_back_sides_do_not() {
     let side = TriMesh { triangles: vec![[0, 1, 2]], positions: vec![DVec3::ZERO, DVec3::X, DVec3::Z] };
     let corners = Colours::Corners(vec![[[0, 0, 255, 255], [255, 0, 0, 255], [255, 0, 0, 255]]]);
     let seen =
-        render(Painted { mesh: &side, colours: Some(&corners) }, &plain(View::FRONT), &Progress::none()).unwrap();
+        render(Painted { mesh: &side, colours: Some(&corners), is_map: false }, &plain(View::FRONT), &Progress::none())
+            .unwrap();
     let (blue, red) = (count(&seen, is_blue), count(&seen, is_rust));
     assert!(blue > 100 && red > 1000, "{blue} blue, {red} red");
 }
@@ -212,18 +216,28 @@ fn pairs_are_seen_by_one_camera() {
 }
 
 #[test]
-fn sheets_hold_the_images_beside_each_other() {
+fn sheets_hold_the_images_in_rows() {
     let image =
         |width, height, colour: [u8; 4]| Image { width, height, rgba: colour.repeat((width * height) as usize) };
-    let sheet = Image::beside(&[image(100, 60, [9; 4]), image(50, 20, [7; 4])]);
+    let two = [image(100, 60, [9; 4]), image(50, 20, [7; 4])];
+    let sheet = Image::sheet(&two, 2);
     assert_eq!((sheet.width, sheet.height), (152, 60));
     let at = |x, y| sheet.pixel(x, y).unwrap()[0];
+    // Whatever the images have at their edges, the gap is white.
     assert_eq!(
         [at(0, 0), at(99, 59), at(100, 30), at(102, 19), at(102, 20), at(151, 39), at(151, 40)],
-        [9, 9, 9, 9, 7, 7, 9]
+        [9, 9, 255, 255, 7, 7, 255]
     );
     assert_eq!(sheet.pixel(152, 0), None);
-    let nothing = Image::beside(&[]);
+    let below = Image::sheet(&two, 1);
+    assert_eq!((below.width, below.height), (100, 82));
+    let at = |x, y| below.pixel(x, y).unwrap()[0];
+    assert_eq!([at(0, 59), at(0, 60), at(24, 62), at(25, 62), at(74, 81), at(75, 81)], [9, 255, 255, 7, 7, 255]);
+    let four = Image::sheet(&[two[0].clone(), two[0].clone(), two[0].clone()], 2);
+    assert_eq!((four.width, four.height), (202, 122));
+    let clear = Image::sheet(&[image(10, 10, [0; 4]), image(10, 10, [7; 4])], 2);
+    assert_eq!(clear.pixel(10, 5), Some([0; 4]));
+    let nothing = Image::sheet(&[], 2);
     assert_eq!((nothing.width, nothing.height), (0, 0));
     assert!(nothing.to_png().is_err());
 }
@@ -236,6 +250,186 @@ fn png_files_decode_to_the_same_pixels() {
     let mut rgba = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut rgba).unwrap();
     assert_eq!(Image { width: info.width, height: info.height, rgba }, image);
+}
+
+#[test]
+fn animations_hold_their_frames() {
+    let mesh = cube(DVec3::ZERO);
+    let options = RenderOptions { width: 60, height: 50, ..RenderOptions::default() };
+    let subject = Subject::new(&mesh, false, &Progress::none()).unwrap();
+    let frames = turntable(&subject, 8, &options, None, &Progress::none()).unwrap();
+    // A cube looks the same after a quarter of a turn, and not before.
+    assert!(frames.len() == 8 && frames[0] != frames[1]);
+    let differ = |a: &Image, b: &Image| a.rgba.iter().zip(&b.rgba).filter(|(a, b)| a.abs_diff(**b) > 12).count();
+    assert!(differ(&frames[0], &frames[2]) < 200 && differ(&frames[0], &frames[1]) > 1000);
+    let file = to_animated_png(&frames, 20).unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
+    assert_eq!(reader.info().animation_control().map(|control| control.num_frames), Some(8));
+    for frame in &frames {
+        let mut rgba = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut rgba).unwrap();
+        assert!(rgba == frame.rgba);
+    }
+    assert!(to_animated_png(&[], 20).is_err());
+    assert!(to_animated_png(&[frames[0].clone(), Image::sheet(&frames, 4)], 20).is_err());
+}
+
+#[test]
+fn jpeg_files_begin_and_end_as_they_should() {
+    let image = drawn(&cube(DVec3::ZERO), &plain(View::ISO));
+    let file = image.to_jpeg().unwrap();
+    assert!(file.starts_with(&[0xff, 0xd8, 0xff]) && file.ends_with(&[0xff, 0xd9]));
+    assert!(Image { width: 0, height: 0, rgba: Vec::new() }.to_jpeg().is_err());
+}
+
+#[test]
+fn perspective_shrinks_what_is_far() {
+    // Straight on, the far side of a cube lies within the near one; in parallel projection the two are one.
+    let mut mesh = cube(DVec3::ZERO);
+    mesh.triangles.drain(..2);
+    let far = Colours::Faces(vec![[20, 40, 230, 255]; mesh.triangles.len()]);
+    mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    let painted = Painted { mesh: &mesh, colours: Some(&far), is_map: false };
+    let width = |projection| {
+        let options = RenderOptions { projection, occlusion: false, ..plain(View::FRONT) };
+        let image = render(painted, &options, &Progress::none()).unwrap();
+        let lit: Vec<u8> = (0..200).filter_map(|x| image.pixel(x, 75)).filter(|p| p[3] > 0).map(|p| p[2]).collect();
+        let middle = lit[lit.len() / 2];
+        (lit.len(), lit.iter().filter(|&&b| b == middle).count())
+    };
+    let (all, back) = width(Projection::Orthographic);
+    assert!(back + 4 > all, "{back} of {all}");
+    let (all, back) = width(Projection::Perspective);
+    // The near side is 3.2 x 1.73 / 2 - 0.5 from the eye, the far one longer by the side.
+    let near = 3.2 * 3f64.sqrt() / 2.0 - 0.5;
+    let expected = near / (near + 1.0);
+    assert!((back as f64 / all as f64 - expected).abs() < 0.03, "{back} of {all}, not {expected}");
+}
+
+#[test]
+fn cuts_show_the_inside_of_closed_meshes_hatched() {
+    let sand = |[r, g, b, a]: [u8; 4]| a > 0 && r > g && g > b && r - b > 25 && u32::from(g) * 4 > u32::from(r) * 3;
+    let clip = |at| Some(Clip { axis: Axis::Z, at });
+    let options = RenderOptions { clip: clip(0.5), occlusion: false, ..plain(View::TOP) };
+    let cut = drawn(&cube(DVec3::ZERO), &options);
+    let all = count(&cut, |p| p[3] == 255) as f64;
+    assert!(count(&cut, sand) as f64 > 0.97 * all && all > 15_000.0, "{} of {all}", count(&cut, sand));
+    assert_eq!(count(&cut, is_rust), 0);
+    // Hollow, the hollow is not hatched: it has a quarter of the area.
+    let mut hollow = cube(DVec3::ZERO);
+    let mut inner = cube(DVec3::ZERO);
+    inner.positions.iter_mut().for_each(|p| *p = *p / 2.0 + 0.25);
+    inner.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    hollow.append(&inner);
+    let share = count(&drawn(&hollow, &options), sand) as f64 / all;
+    assert!((share - 0.75).abs() < 0.02, "{share}");
+    // An open mesh has no inside: what is seen are its inner sides.
+    let open = drawn(&open_cube(), &options);
+    assert!(count(&open, sand) == 0 && count(&open, is_rust) > 10_000);
+    // A plane beyond the mesh takes nothing, or all.
+    let whole = RenderOptions { clip: None, ..options.clone() };
+    assert_eq!(
+        drawn(&cube(DVec3::ZERO), &RenderOptions { clip: clip(2.0), ..options.clone() }),
+        drawn(&cube(DVec3::ZERO), &whole)
+    );
+    assert_eq!(
+        count(&drawn(&cube(DVec3::ZERO), &RenderOptions { clip: clip(-1.0), ..options.clone() }), |p| p[3] > 0),
+        0
+    );
+    // In perspective the same plane cuts the same mesh.
+    let far = RenderOptions { projection: Projection::Perspective, ..options };
+    assert!(count(&drawn(&cube(DVec3::ZERO), &far), sand) > 5_000);
+}
+
+#[test]
+fn clear_surfaces_let_what_is_behind_them_through() {
+    let mut mesh = cube(DVec3::ZERO);
+    let mut inner = cube(DVec3::ZERO);
+    inner.positions.iter_mut().for_each(|p| *p = *p / 2.0 + 0.25);
+    mesh.append(&inner);
+    let options = |opacity| RenderOptions { opacity, ..plain(View::FRONT) };
+    let at = |opacity, x| drawn(&mesh, &options(opacity)).pixel(x, 75).unwrap();
+    // Opaque, the inner cube is hidden; clear, there is more to see through in the middle.
+    assert_eq!(at(1.0, 60), at(1.0, 100));
+    let (edge, middle) = (at(0.3, 60), at(0.3, 100));
+    let expected = |surfaces: i32| 255.0 * (1.0 - 0.7f64.powi(surfaces));
+    assert!((f64::from(edge[3]) - expected(2)).abs() < 2.0, "{edge:?}");
+    assert!((f64::from(middle[3]) - expected(4)).abs() < 2.0, "{middle:?}");
+    assert_eq!(count(&drawn(&mesh, &options(0.3)), is_rust), 0);
+}
+
+#[test]
+fn white_parts_stand_out_from_the_background() {
+    let mesh = cube(DVec3::ZERO);
+    let white = Colours::Faces(vec![[255; 4]; mesh.triangles.len()]);
+    let painted = Painted { mesh: &mesh, colours: Some(&white), is_map: false };
+    let options = RenderOptions { background: Background::Gradient, edges: EdgeDrawing::Sharp, ..plain(View::ISO) };
+    let image = render(painted, &options, &Progress::none()).unwrap();
+    let clear =
+        render(painted, &RenderOptions { background: Background::Transparent, ..options }, &Progress::none()).unwrap();
+    let pixels = image.rgba.as_chunks::<4>().0.iter().zip(clear.rgba.as_chunks::<4>().0);
+    let (mut behind, mut lit) = (Vec::new(), Vec::new());
+    for (pixel, clear) in pixels {
+        match clear[3] {
+            0 => behind.push(pixel[0]),
+            255 => lit.push(pixel[0]),
+            _ => {}
+        }
+    }
+    assert!(behind.iter().all(|&b| (200..240).contains(&b)));
+    // Nothing is burnt out, and the brightest side is lighter than what is behind.
+    assert!(lit.iter().all(|&b| b < 253) && lit.iter().filter(|&&b| b > 240).count() > 1000);
+    // The outline: dark all around.
+    assert!(lit.iter().filter(|&&b| b < 110).count() > 200);
+}
+
+#[test]
+fn captions_stand_around_the_mesh() {
+    let mesh = open_cube();
+    let subject = Subject::new(&mesh, true, &Progress::none()).unwrap();
+    assert_eq!((subject.defects().open_edges, subject.defects().shows_inside), (4, true));
+    let options = RenderOptions {
+        width: 480,
+        height: 360,
+        defects: true,
+        background: Background::White,
+        ..RenderOptions::default()
+    };
+    let caption = Caption {
+        title: "A box without a side".into(),
+        legend: defect_legend(&subject.defects()),
+        scale: Some(crate::io::ColourScale {
+            title: "mm".into(),
+            low: -1.0,
+            high: 1.0,
+            stops: vec![[0, 0, 255], [0, 255, 0]],
+            histogram: vec![1, 2],
+        }),
+        unit: "mm".into(),
+    };
+    let draw = |captions: &[Caption]| {
+        render_views(std::slice::from_ref(&subject), &[View::ISO], &options, captions, &Progress::none())
+            .unwrap()
+            .remove(0)
+    };
+    let (with, bare) = (draw(&[caption]), draw(&[]));
+    let inked = |image: &Image, xs: std::ops::Range<u32>, ys: std::ops::Range<u32>| {
+        ys.flat_map(|y| xs.clone().map(move |x| (x, y)))
+            .filter(|&(x, y)| image.pixel(x, y).is_some_and(|p| p[..3] != [255; 3]))
+            .count()
+    };
+    // Above, below, to the right.
+    for (xs, ys, least) in [(0..240, 0..20, 150), (0..200, 315..360, 200), (380..480, 20..315, 2000)] {
+        let found = inked(&with, xs.clone(), ys.clone());
+        assert!(found > least, "{xs:?} {ys:?}: {found}");
+    }
+    assert_eq!(inked(&bare, 0..240, 0..10), 0);
+    // Too small a picture has none.
+    let small = RenderOptions { width: 100, height: 90, ..options };
+    let of = |captions: &[Caption]| {
+        render_views(std::slice::from_ref(&subject), &[View::ISO], &small, captions, &Progress::none()).unwrap()
+    };
+    assert_eq!(of(&[Caption { title: "x".into(), ..Caption::default() }]), of(&[]));
 }
 
 #[test]

@@ -180,5 +180,5 @@ fn where_triangles_cross_is_measured_and_drawn() {
         bytes.chunks(4).filter(|pixel| pixel[2] > 150 && pixel[0] < 60 && pixel[1] < 90).count()
     };
     assert!(blue("") > 50 && blue("--no-defects") == 0, "{} {}", blue(""), blue("--no-defects"));
-    run_in(&folder, &format!("render {BOXES} -o OUT/a.png")).exits(0).says(&["where they cross blue"]);
+    run_in(&folder, &format!("render {BOXES} -o OUT/a.png")).exits(0).says(&["where they cross"]);
 }

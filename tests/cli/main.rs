@@ -20,6 +20,7 @@ mod files;
 mod gpu;
 mod maps;
 mod page;
+mod pictures;
 mod readers;
 mod schema;
 mod sdf;

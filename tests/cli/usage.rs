@@ -76,7 +76,7 @@ fn wrong_usage_exits_with_2_and_a_sentence() {
         ("convert testdata/torus.ply -o OUT/a.stl --out-format ply", "is named as stl, and ply would be written"),
         ("repair testdata/torus.ply -o OUT/a.stl --map OUT/a.png", "is named as png, and ply would be written"),
         ("compare testdata/torus.ply testdata/torus.ply --map OUT/a.obj", "is named as obj, and ply would be written"),
-        ("render testdata/torus.ply -o OUT/a.jpg", "is named as jpg, and png would be written"),
+        ("render testdata/torus.ply -o OUT/a.gif", "is named as gif, and png would be written"),
         ("sdf testdata/torus.ply -o OUT/a.vti --out-format nrrd", "is named as vti, and nrrd would be written"),
         ("field a a=testdata/torus.ply -o OUT/a.vti --out-format stl", "is named as vti, and stl would be written"),
         ("inspect testdata/torus.ply --report OUT/a.stl", "is named as stl, and json would be written"),

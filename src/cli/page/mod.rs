@@ -10,7 +10,7 @@ mod shown;
 mod verdict;
 mod viewed;
 
-pub use scene::{of_comparison, of_decimation, of_inspection, of_solid};
+pub use scene::{of_comparison, of_decimation, of_inspection, of_solid, regions};
 pub use seen::{Origin, SolidSeen};
 pub use shown::Scene;
 pub use viewed::html_of_files;

@@ -275,7 +275,7 @@ fn canal_marks(pipeline: &Report) -> Option<Marks> {
 }
 
 /// The boxes of thin and doubtful places.
-fn regions(pipeline: &Report) -> Vec<Lines> {
+pub fn regions(pipeline: &Report) -> Vec<Lines> {
     let thin = pipeline.thin.regions.iter().map(|region| (region.min, region.max));
     let doubtful = pipeline.vote.doubtful_regions.iter().map(|region| (region.min, region.max));
     let boxes = |list: Vec<([f64; 3], [f64; 3])>| {
@@ -424,7 +424,7 @@ fn picture(
     progress: &Progress,
 ) -> Result<Option<Vec<u8>>, Failure> {
     let options = RenderOptions { width: 720, height: 560, defects, ..RenderOptions::default() };
-    match render(Painted { mesh, colours: colours.as_ref() }, &options, progress) {
+    match render(Painted { mesh, colours: colours.as_ref(), is_map: true }, &options, progress) {
         Ok(image) => Ok(image.to_png().ok()),
         Err(RenderError::Stopped(stopped)) => Err(stopped.into()),
         Err(_) => Ok(None),

@@ -1,5 +1,6 @@
 //! The header: what elements there are and how their rows are laid out.
 
+use super::super::colour_scale::ColourScale;
 use super::super::error::{FileError, FileProblem};
 use super::super::legend::LegendEntry;
 use super::super::text::{Words, integer, quoted, quoted_or_end};
@@ -76,6 +77,8 @@ pub(super) struct Header {
     pub(super) elements: Vec<Element>,
     /// What comments say of the colours.
     pub(super) legend: Vec<LegendEntry>,
+    /// What they say of values that colours stand for.
+    pub(super) scale: Option<ColourScale>,
     /// Names of image files in comments.
     pub(super) images: Vec<Vec<u8>>,
     /// Lines of the header.
@@ -95,7 +98,7 @@ impl Header {
         let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
-        let (mut legend, mut images) = (Vec::new(), Vec::new());
+        let (mut legend, mut images, mut scale) = (Vec::new(), Vec::new(), ColourScale::default());
         let mut used = 0;
         for (i, raw) in bytes.split_inclusive(|&b| b == end).enumerate() {
             used += raw.len();
@@ -117,11 +120,22 @@ impl Header {
                 }
                 Some(b"end_header") => {
                     let encoding = encoding.ok_or_else(|| fail("a `format` line in the header", "none".into()))?;
-                    return Ok(Self { encoding, elements, legend, images, lines: at, bytes: used });
+                    return Ok(Self {
+                        encoding,
+                        elements,
+                        legend,
+                        scale: scale.whole(),
+                        images,
+                        lines: at,
+                        bytes: used,
+                    });
                 }
                 Some(b"comment") => match words.rest().strip_prefix(b"TextureFile ") {
                     Some(name) => images.push(name.trim_ascii().to_vec()),
-                    None => LegendEntry::gather(words.rest(), &mut legend),
+                    None => {
+                        LegendEntry::gather(words.rest(), &mut legend);
+                        ColourScale::gather(words.rest(), &mut scale);
+                    }
                 },
                 None | Some(b"obj_info") => {}
                 Some(word) => return Err(fail("a line of the header", quoted(word))),

@@ -55,7 +55,7 @@ pub(super) fn read(bytes: &[u8], path: Option<&Path>) -> Result<Loaded, FileErro
     of_vertices.spread(&mut soup);
     texture::hang(&header.images, path, &mut soup);
     let loaded = soup.finish(Format::Ply, None)?;
-    Ok(Loaded { legend: header.legend, ..loaded })
+    Ok(Loaded { legend: header.legend, scale: header.scale, ..loaded })
 }
 
 fn read_vertices(
