@@ -16,7 +16,9 @@ use super::streams;
 use super::words::{self, UnitName};
 use crate::io::{FileProblem, GridFile, Unit, read_grid_within};
 use crate::mesh::Bounds;
-use crate::picture::{Axis, Image, RenderError, SliceCaption, SliceColours, SlicePlane, SliceSamples, sample_slice};
+use crate::picture::{
+    Axis, Image, RenderError, SliceCaption, SliceColours, SlicePlane, SliceSamples, SliceSize, sample_slice,
+};
 use crate::sdf::exact::{ExactDistance, PointSign};
 use crate::vote::WindingTree;
 
@@ -222,7 +224,7 @@ pub struct SliceWords<'a> {
     pub y_up: bool,
     /// Titles in the order of the slices, instead of the names of the files.
     pub titles: &'a [String],
-    /// Whether there is no title.
+    /// Whether there are no words, no axes and no bar.
     pub plain: bool,
 }
 
@@ -239,6 +241,7 @@ pub fn draw(
     let unit = fields.iter().find_map(|field| field.unit);
     let at = choice.resolve("--slice", &bounds, unit)?;
     let plane = SlicePlane::through(&bounds, choice.axis, at, how.y_up);
+    let size = SliceSize { pixels: size, plain: how.plain };
     let sample = |field: &Field<'_>| sample_slice(&field.value, &plane, size, &session.progress);
     let samples: Vec<SliceSamples> = fields.iter().map(sample).collect::<Result<_, _>>().map_err(failure)?;
     let colours = SliceColours::up_to(samples.iter().map(SliceSamples::farthest).fold(0.0, f64::max));
@@ -255,7 +258,7 @@ pub fn draw(
         let file = Path::new(field.label).file_name().map_or(field.label.into(), |name| name.to_string_lossy());
         let place = words::length(at, name.as_deref());
         let own = format!("{file}, {} = {place}", choice.axis.name());
-        let title = if how.plain { String::new() } else { how.titles.get(n).cloned().unwrap_or(own) };
+        let title = how.titles.get(n).cloned().unwrap_or(own);
         SliceCaption { title, unit: name.clone().unwrap_or_default() }
     };
     let captions = fields.iter().enumerate().map(caption);

@@ -40,5 +40,5 @@ pub use legend::{DEFECT_COLOURS, defect_legend};
 pub use options::{Background, Clip, EdgeDrawing, Painted, RenderError, RenderOptions};
 pub use ramp::ramp_colour;
 pub use render::{render, render_pair, render_views, turntable};
-pub use slice::{Axis, SliceCaption, SliceColours, SlicePlane, SliceSamples, sample_slice, slice};
+pub use slice::{Axis, SliceCaption, SliceColours, SlicePlane, SliceSamples, SliceSize, sample_slice, slice};
 pub use subject::{DefectCounts, Subject};

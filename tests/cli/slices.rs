@@ -40,7 +40,8 @@ fn every_format_holds_the_same_field_and_makes_the_same_picture() {
             assert_eq!(file.at(voxel), first.at(voxel), "{} at {voxel}", file.format);
         }
         let format = file.format;
-        run_in(&folder, &format!("render OUT/f.{format} -o OUT/{format}.png --width 300 --height 200 -q")).exits(0);
+        run_in(&folder, &format!("render OUT/f.{format} -o OUT/{format}.png --width 300 --height 200 --plain -q"))
+            .exits(0);
     }
     let expected = picture(&folder, "vti.png");
     assert!(["nrrd.png", "npy.png", "vdb.png"].iter().all(|name| picture(&folder, name) == expected));
@@ -87,8 +88,11 @@ fn slices_show_both_sides_and_where_they_meet() {
     let folder = folder();
     run_in(&folder, "sdf testdata/torus.ply -o OUT/t.vti --resolution 40 --band 8h --unit mm").exits(0);
     let size = "--width 320 --height 240";
-    let said =
-        run_in(&folder, &format!("render OUT/t.vti -o OUT/z.png --slice z=60% {size} --report OUT/r.json")).exits(0);
+    let said = run_in(
+        &folder,
+        &format!("render OUT/t.vti -o OUT/z.png --slice z=60% --title t.vti {size} --report OUT/r.json"),
+    )
+    .exits(0);
     said.says(&["320 x 240 pixels", "slice z = ", "blue inside, orange outside", " mm"]);
     let report = std::fs::read(folder.path().join("r.json")).expect("a report");
     let report: serde_json::Value = serde_json::from_slice(&report).expect("JSON");
@@ -106,7 +110,7 @@ fn slices_show_both_sides_and_where_they_meet() {
     assert!(blue > 1000 && orange > 5000 && (200..4000).contains(&dark), "{blue} {orange} {dark}");
     // A grid is told by its content, also from a stream.
     std::fs::rename(folder.path().join("t.vti"), folder.path().join("t.stl")).expect("another name");
-    run_in(&folder, &format!("render OUT/t.stl -o OUT/s.png --slice z=60% {size}")).exits(0);
+    run_in(&folder, &format!("render OUT/t.stl -o OUT/s.png --slice z=60% --title t.vti {size}")).exits(0);
     assert!(picture(&folder, "s.png") == (width, height, pixels));
 }
 

@@ -1,7 +1,7 @@
 //! Where things are on the picture of a slice, and its words.
 
 use super::plane::{Side, SlicePlane};
-use super::{SliceCaption, SliceColours};
+use super::{SliceCaption, SliceColours, SliceSize};
 use crate::picture::bar::{Bar, label, round_step};
 use crate::picture::caption::{LEAST, pen_for};
 use crate::picture::colour_map::colour;
@@ -25,11 +25,11 @@ pub(super) struct Layout {
 const ROOM: [f32; 4] = [3.8, 2.0, 6.4, 2.9];
 
 impl Layout {
-    pub(super) fn of(size: [u32; 2]) -> Self {
+    pub(super) fn of(SliceSize { pixels: size, plain }: SliceSize) -> Self {
         let line = (size[0].min(size[1]) as f32 / 700.0).max(1.0);
         let pen = pen_for(size);
         let bare = Self { size, corner: [0, 0], plot: size, line, pen };
-        if size[0] < LEAST[0] || size[1] < LEAST[1] {
+        if plain || size[0] < LEAST[0] || size[1] < LEAST[1] {
             return bare;
         }
         let [left, above, right, below] = ROOM.map(|room| (room * pen.size).round() as u32);

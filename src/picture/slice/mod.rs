@@ -49,6 +49,21 @@ impl SliceColours {
     }
 }
 
+/// The size of the picture of a slice, and what is on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SliceSize {
+    /// Pixels across and down.
+    pub pixels: [u32; 2],
+    /// Whether the slice fills it all, without words, axes and bar; smaller pictures than 240 x 180 never have any.
+    pub plain: bool,
+}
+
+impl From<[u32; 2]> for SliceSize {
+    fn from(pixels: [u32; 2]) -> Self {
+        Self { pixels, plain: false }
+    }
+}
+
 /// What is written around a slice.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct SliceCaption {
@@ -66,10 +81,11 @@ pub struct SliceCaption {
 pub fn sample_slice(
     field: impl Fn(DVec3) -> f64 + Sync,
     plane: &SlicePlane,
-    size: [u32; 2],
+    size: impl Into<SliceSize>,
     progress: &Progress,
 ) -> Result<SliceSamples, RenderError> {
-    check_size(size, 1, 1)?;
+    let size = size.into();
+    check_size(size.pixels, 1, 1)?;
     let layout = Layout::of(size);
     let [width, height] = layout.plot.map(|k| k as usize);
     let extent = DVec2::new(width as f64, height as f64);
@@ -115,7 +131,7 @@ impl SliceSamples {
         self.range().map_or(0.0, |[low, high]| low.abs().max(high.abs()))
     }
 
-    /// The picture: colours, grey beyond the band of values, thin lines every `step`, a bold one at zero; on pictures of 240 x 180 pixels and more a bar of the colours with its values, and the
+    /// The picture: colours, grey beyond the band of values, thin lines every `step`, a bold one at zero; unless it is plain, a bar of the colours with its values, and the
     /// axes with theirs.
     pub fn draw(&self, colours: &SliceColours, caption: &SliceCaption) -> Image {
         let [width, height] = self.layout.size;

@@ -115,8 +115,9 @@ fn where_y_points_up_the_picture_turns_with_it() {
 #[test]
 fn the_bar_and_the_axes_have_their_values() {
     let image = drawn(|p| p.x, Axis::Z, [600, 400]);
-    let layout = Layout::of([600, 400]);
-    assert_eq!((Layout::of([200, 400]).plot, Layout::of([200, 400]).corner), ([200, 400], [0, 0]));
+    let layout = Layout::of([600, 400].into());
+    assert_eq!((Layout::of([200, 400].into()).plot, Layout::of([200, 400].into()).corner), ([200, 400], [0, 0]));
+    assert_eq!(Layout::of(SliceSize { pixels: [600, 400], plain: true }).plot, [600, 400]);
     let [right, bottom] = [0, 1].map(|k| layout.corner[k] + layout.plot[k]);
     assert!(right < 560 && bottom < 390);
     let strip = |y: u32| image.pixel(right + 14, y).expect("a pixel");
