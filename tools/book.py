@@ -5,7 +5,7 @@
 
 Every page that docs/SUMMARY.md names has a folder of its own, with a copy of `testdata/`. The lines of its blocks marked ```sh are run there in order by bash, with PROGRAM as `meshwright`; each must end with
 status 0, or with the one that a comment at its end tells (`# exit 3`). What a block marked ```text shows right after them must be among what they said, but for times and memory; `...` stands for what is left
-out. Blocks marked ```sh,ignore are counted, and not run. Comments of a page, which readers do not see, prepare what it needs:
+out. In blocks marked ```console a command begins with `$ `, and its answer follows. Blocks marked ```sh,ignore are counted, and not run. Comments of a page, which readers do not see, prepare what it needs:
 
     <!-- book: files part.stl=testdata/torus.ply -->   makes files, by `meshwright convert`
     <!-- book: shot page.html page.png -->             takes a picture of a page that a command has made (--pictures alone; needs playwright and Chromium)
@@ -33,7 +33,9 @@ ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 PICTURES = DOCS / "guide" / "images"
 BUILT = ROOT / "target" / "book"
-RESOLUTION = 96
+RESOLUTION = 64
+# The verbs that --quick gives larger voxels; others need those that they have, or take none.
+SLOW = ["dilate", "erode", "open", "close", "canals", "field", "sdf"]
 SIZE = {"--width": "240", "--height": "180"}
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
 
@@ -80,8 +82,12 @@ def quick(line):
     """The same command with large voxels and small pictures, and whether what it says may differ for that; a plan or a refusal is quick as it is."""
     if "--plan" in line or re.search(r"\bexit \d", line):
         return line, False
-    resolution = lambda found: f"--resolution {min(int(found[1]), RESOLUTION)}"  # noqa: E731
-    changed = re.sub(r"--resolution (\d+)", resolution, line)
+    changed = line
+    if re.match(rf"meshwright (?:batch )?(?:{'|'.join(SLOW)}) ", line):
+        resolution = lambda found: f"--resolution {min(int(found[1]), RESOLUTION)}"  # noqa: E731
+        changed = re.sub(r"--resolution (\d+)", resolution, line)
+        if "--resolution" not in line and "--voxel" not in line:
+            changed += f" --resolution {RESOLUTION}"
     coarser = changed != line
     if re.match(r"meshwright render ", changed):
         for flag, size in SIZE.items():
@@ -129,6 +135,9 @@ class Page:
                 continue
             if kind == "sh":
                 told = self.block(lines)
+            elif kind == "console":
+                told = self.block([line[2:] for line in lines if line.startswith("$ ")])
+                self.compare([line for line in lines if not line.startswith("$ ")], told)
             elif kind == "text" and last == "sh":
                 self.compare(lines, told)
             elif kind == "sh,ignore":
@@ -199,7 +208,7 @@ def shot(page, picture):
 
     with sync_playwright() as tool:
         browser = tool.chromium.launch(executable_path=os.environ.get("CHROMIUM") or shutil.which("chromium"), args=FLAGS)
-        tab = browser.new_page(viewport={"width": 900, "height": 1000})
+        tab = browser.new_page(viewport={"width": 720, "height": 640})
         tab.goto(page.resolve().as_uri())
         tab.wait_for_selector("canvas[data-drawn='1']", state="attached", timeout=60000)
         tab.wait_for_timeout(500)
