@@ -11,8 +11,8 @@ out. In blocks marked ```console a command begins with `$ `, and its answer foll
     <!-- book: shot page.html page.png -->             takes a picture of a page that a command has made (--pictures alone; needs playwright and Chromium)
     <!-- book: run by tools/examples.py -->            leaves the page to another script
 
-A picture `images/NAME.png` of the guide is the NAME.png that a command of its page makes. With --pictures these are drawn again; else it is only checked that each exists and has its command. Every verb of
-PROGRAM must be run by a page of docs/guide/verbs. --quick: lower resolutions where a command states one, and small pictures. --only: the pages whose name has the word.
+A picture `images/NAME.png` on a page of the guide is the NAME.png that a command of this page makes. With --pictures these are drawn again; else it is only checked that each exists and has its command. Every verb of
+PROGRAM must be run by a page of docs/guide/verbs. --quick: larger voxels for the verbs that take longest, and small pictures. --only: the pages whose name has the word.
 
 --links: every link and picture in the documents leads to a file, and every #anchor to a heading. Where the book is built (target/book, by `mdbook build docs`), the same of its pages, and that they load nothing from another host.
 """
@@ -190,7 +190,7 @@ class Page:
         used = set()
         for link in re.findall(r"!\[[^\]]*\]\(([^)\s]+)", self.path.read_text()):
             target = (self.path.parent / link).resolve()
-            if target.parent == PICTURES and target.suffix == ".png":
+            if target.parent == PICTURES and target.suffix == ".png" and PICTURES.parent in self.path.parents:
                 used.add(target.name)
                 if target.name not in made:
                     self.faults.append(f"no command makes {target.name}")
@@ -208,7 +208,7 @@ def shot(page, picture):
 
     with sync_playwright() as tool:
         browser = tool.chromium.launch(executable_path=os.environ.get("CHROMIUM") or shutil.which("chromium"), args=FLAGS)
-        tab = browser.new_page(viewport={"width": 720, "height": 640})
+        tab = browser.new_page(viewport={"width": 680, "height": 600})
         tab.goto(page.resolve().as_uri())
         tab.wait_for_selector("canvas[data-drawn='1']", state="attached", timeout=60000)
         tab.wait_for_timeout(500)
@@ -249,7 +249,7 @@ def run_pages(options):
             shutil.rmtree(folder)
     if not options.only:
         faults += [f"no page of docs/guide/verbs runs {verb}" for verb in verbs(options.program) if verb not in verbs_run]
-        faults += [f"{path.relative_to(ROOT)} is on no page" for path in sorted(PICTURES.glob("*.png")) if path.name not in used]
+        faults += [f"{path.relative_to(ROOT)} is on no page of the guide" for path in sorted(PICTURES.glob("*.png")) if path.name not in used]
         listed = set(pages())
         faults += [f"{path.relative_to(ROOT)} is not in SUMMARY.md" for path in sorted(DOCS.rglob("*.md")) if path not in listed and path.name != "SUMMARY.md"]
     print(f"{run} commands run, {skipped} not")
