@@ -4,11 +4,12 @@
     python3 tools/book.py PROGRAM [--quick] [--pictures] [--links] [--only WORD]
 
 Every page that docs/SUMMARY.md names has a folder of its own, with a copy of `testdata/`. The lines of its blocks marked ```sh are run there in order by bash, with PROGRAM as `meshwright`; each must end with
-status 0, or with the one that a comment at its end tells (`# exit 3`). What a block marked ```text shows right after them must be among what they said, but for times and memory; `...` stands for what is left
-out. In blocks marked ```console a command begins with `$ `, and its answer follows. Blocks marked ```sh,ignore are counted, and not run. Comments of a page, which readers do not see, prepare what it needs:
+status 0, or with the one that a comment at its end tells (`# exit 3`). What a block marked ```text shows after them in the same section must be among what the last block
+before it said, but for times and memory; `...` stands for what is left out. In blocks marked ```console a command begins with `$ `, and its answer follows. Blocks marked ```sh,ignore are counted, and not run. Comments of a page, which readers do not see, prepare what it needs:
 
     <!-- book: files part.stl=testdata/torus.ply -->   makes files, by `meshwright convert`
     <!-- book: shot page.html page.png -->             takes a picture of a page that a command has made (--pictures alone; needs playwright and Chromium)
+    <!-- book: skips 2 -->                             how many commands of a page of the guide are not run
     <!-- book: run by tools/examples.py -->            leaves the page to another script
 
 A picture `images/NAME.png` on a page of the guide is the NAME.png that a command of this page makes. With --pictures these are drawn again; else it is only checked that each exists and has its command. Every verb of
@@ -120,13 +121,13 @@ class Page:
     def __init__(self, path, folder, options):
         self.path, self.folder, self.options = path, folder, options
         self.name = str(path.relative_to(DOCS))
-        self.run_lines, self.skipped, self.shown, self.faults, self.elsewhere = [], 0, 0, [], None
+        self.run_lines, self.skipped, self.allowed, self.shown, self.faults, self.elsewhere = [], 0, 0, 0, [], None
         self.coarser = False
         shutil.copytree(ROOT / "testdata", folder / "testdata")
         self.environment = dict(os.environ, PATH=f"{options.bin}{os.pathsep}{os.environ['PATH']}", NO_COLOR="1")
 
     def run(self):
-        told, last = "", None
+        told = None
         for kind, lines in parts(self.path):
             if kind == "directive":
                 self.prepare(lines)
@@ -138,13 +139,16 @@ class Page:
             elif kind == "console":
                 told = self.block([line[2:] for line in lines if line.startswith("$ ")])
                 self.compare([line for line in lines if not line.startswith("$ ")], told)
-            elif kind == "text" and last == "sh":
+            elif kind == "text" and told is not None:
                 self.compare(lines, told)
+            elif kind == "words" and lines[0].startswith("#"):
+                told = None
             elif kind == "sh,ignore":
                 self.skipped += sum(1 for _ in commands(lines))
             elif kind not in ("words", "text") and any(re.match(r"\s*\$? ?meshwright [a-z]", line) for line in lines):
                 self.faults.append(f"a command in a block that is not marked sh: {lines[0].strip()}")
-            last = kind
+        if self.skipped != self.allowed and PICTURES.parent in self.path.parents:
+            self.faults.append(f"{self.skipped} commands are not run, and the page allows {self.allowed}")
 
     def prepare(self, words):
         if words[0] == "files":
@@ -156,6 +160,8 @@ class Page:
                 shot(self.folder / words[1], self.folder / words[2])
             else:
                 (self.folder / words[2]).touch()
+        elif words[0] == "skips":
+            self.allowed = int(words[1])
         elif words[:2] == ["run", "by"]:
             self.elsewhere = words[2]
         else:
