@@ -217,6 +217,7 @@ def shot(page, picture):
         tab = browser.new_page(viewport={"width": 680, "height": 600})
         tab.goto(page.resolve().as_uri())
         tab.wait_for_selector("canvas[data-drawn='1']", state="attached", timeout=60000)
+        tab.evaluate("const c = document.querySelector('canvas'); if (c.getBoundingClientRect().bottom > innerHeight) c.scrollIntoView({block: 'end'})")
         tab.wait_for_timeout(500)
         tab.screenshot(path=str(picture))
         browser.close()
