@@ -1,6 +1,6 @@
 //! Integers of a fixed greatest width, as sign and magnitude: what the exact predicates compute with.
 //!
-//! The bit lengths of all quantities are known beforehand (see the table in `docs/algorithms.md`), so that nothing is allocated.
+//! The bit lengths of all quantities are known beforehand (see the table in `docs/algorithms/arrangement.md`), so that nothing is allocated.
 //! A product costs what the lengths of its factors ask for: most are of two limbs.
 
 use std::cmp::Ordering;

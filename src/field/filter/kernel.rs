@@ -86,7 +86,7 @@ pub enum Sampling {
         /// Where the sequence of random numbers begins.
         seed: u64,
         /// Whether each displacement is followed by its opposite. A field that is linear is then filtered without any
-        /// error; docs/algorithms.md has what it does to others.
+        /// error; docs/algorithms/fields.md has what it does to others.
         mirrored: bool,
     },
     /// At so many places along each axis of the cube around the kernel, weighted by it: the sum (9).
