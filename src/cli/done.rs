@@ -57,8 +57,9 @@ pub fn done(pipeline: &Report, unit: UnitName<'_>) -> Vec<String> {
     }
     if let Some(canals) = pipeline.canals.as_ref().filter(|canals| !canals.removed.is_empty()) {
         let volume = pipeline.morphology.as_ref().map(|m| words::percent_change(m.volume_before, m.volume_after));
+        let volume = volume.map_or(String::new(), |change| format!(": volume {change}"));
         let (filled, all) = (words::count(canals.removed.len()), words::plural(canals.canals.len(), "canal"));
-        parts.push(format!("{filled} of {all} filled (--map shows where): volume {}", volume.unwrap_or_default()));
+        parts.push(format!("{filled} of {all} filled (--map shows where){volume}"));
     } else if let Some(change) = &pipeline.morphology {
         let by = words::length(change.radius, unit);
         let word = match change.operation {

@@ -59,9 +59,9 @@ fn outcome(objects: &[ObjectEntry]) -> String {
     let count = |done: ObjectDone| objects.iter().filter(|object| object.done == done).count();
     let kinds = [
         (ObjectDone::Repaired, "repaired"),
-        (ObjectDone::Kept, "kept as it was, a solid already"),
-        (ObjectDone::Left, "left as it was, not a solid"),
-        (ObjectDone::NotPicked, "not picked, left as it was"),
+        (ObjectDone::Kept, "kept, solid already"),
+        (ObjectDone::Left, "left alone, not solid"),
+        (ObjectDone::NotPicked, "not picked"),
     ];
     let parts = kinds.into_iter().map(|(done, what)| (count(done), what)).filter(|(count, _)| *count > 0);
     let parts: Vec<String> = parts.map(|(count, what)| format!("{} {what}", words::plural(count, "object"))).collect();

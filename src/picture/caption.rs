@@ -109,7 +109,8 @@ impl Captions {
         let pen = self.pen;
         let Some(pixels) = camera.pixels_of(1.0).filter(|&pixels| pixels > 0.0 && pixels.is_finite()) else { return };
         let most = f64::from((SCALE - 2.0) * pen.size) / pixels;
-        let length = round_step(most / 2.0 * (1.0 - 1e-9)).filter(|&length| length <= most).unwrap_or(most);
+        // From one round number to the next it is 2.5 times as far at most.
+        let Some(length) = round_step(most / 2.5) else { return };
         let wide = (length * pixels) as f32;
         let thick = (0.11 * pen.size).round().max(1.0);
         let line = |image: &mut Image, [x, y]: [f32; 2], [across, down]: [f32; 2]| {

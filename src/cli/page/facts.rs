@@ -40,12 +40,17 @@ pub(super) fn first(report: &RunReport, unit: UnitName<'_>) -> Vec<Section> {
     vec![section("numbers", "In numbers", parts), section("notes", "Notes", notes)]
 }
 
-/// The text with a large letter at its beginning and a full stop at its end; names of formats are written large.
+/// The text with a large letter at its beginning and a full stop at its end; names of formats are written large, those of files as they are.
 fn capital(text: &str) -> String {
     let text = text.trim_end_matches('.');
     let word: String = text.chars().take_while(|letter| letter.is_ascii_alphanumeric()).collect();
     if word.parse::<Format>().is_ok() {
         return format!("{}{}.", word.to_uppercase(), &text[word.len()..]);
+    }
+    // The name of a file stays as it is.
+    let named = text.split([' ', ':']).next().is_some_and(|first| first.contains(['.', '/', '\\']));
+    if named {
+        return format!("{text}.");
     }
     let mut letters = text.chars();
     let first: String = letters.next().map_or(String::new(), |first| first.to_uppercase().collect());

@@ -127,7 +127,7 @@ fn filling_finds_all_values_in_the_band_and_all_sides() {
                 fill(&*field, &lattice, &FillOptions { band, max_memory: None }, &Progress::none()).unwrap().grid;
             let band = band.unwrap_or(f64::INFINITY);
             let voxels = lattice.dims.element_product();
-            for n in (0..voxels).step_by(7) {
+            for n in (0..voxels).step_by(31) {
                 let voxel = IVec3::new(
                     n % lattice.dims.x,
                     n / lattice.dims.x % lattice.dims.y,
