@@ -17,10 +17,7 @@ Operators, from the one that binds tightest, grouping from the left as in Python
   a & b   inside both
   a ^ b   inside exactly one
   a | b   inside at least one
-Parentheses group. A name is letters, digits and _, and begins with no digit.
-
-Example:
-  meshwright csg 'a - (b | c)' a=block.stl b=hole.obj c=slot.ply -o part.3mf";
+Parentheses group. A name is letters, digits and _, and begins with no digit.";
 
 /// `csg EXPR NAME=FILE... -o OUT`.
 #[derive(Debug, Args)]

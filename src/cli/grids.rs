@@ -10,6 +10,7 @@ use super::entries::GridEntry;
 use super::exit::{Exit, Failure};
 use super::given::Given;
 use super::inspect_args::InspectArgs;
+use super::meant::{self, GRID_ENDINGS};
 use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
@@ -118,8 +119,10 @@ fn target(args: &ConvertArgs, label: &str) -> Result<GridFormat, Failure> {
             Err(Failure::usage("standard output has no name that tells its format")
                 .hint("--out-format says it, for example --out-format nrrd"))
         }
-        None => Err(Failure::usage(format!("the name {} does not tell its format", args.output.display()))
-            .hint("end it in .vti, .nrrd, .npy or .vdb, or give --out-format")),
+        None => {
+            let endings = format!("{GRID_ENDINGS}, or give --out-format");
+            Err(meant::untold(&args.output, &meant::grid_formats(), &endings))
+        }
     }
 }
 

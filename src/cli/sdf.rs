@@ -12,6 +12,7 @@ use super::epilogue;
 use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
 use super::input::{self, Input};
 use super::length::{BandChoice, Scale};
+use super::meant::{self, GRID_ENDINGS};
 use super::report::RunReport;
 use super::result::RunResult;
 use super::sdf_args::SdfArgs;
@@ -74,8 +75,7 @@ fn format(args: &SdfArgs) -> Result<Option<GridFormat>, Failure> {
                 .hint("--out-format says it, for example --out-format nrrd"));
         }
         (None, None) => {
-            return Err(Failure::usage(format!("the name {} does not tell its format", path.display()))
-                .hint("end it in .vti, .nrrd, .npy or .vdb, or give --out-format"));
+            return Err(meant::untold(path, &meant::grid_formats(), &format!("{GRID_ENDINGS}, or give --out-format")));
         }
     };
     Ok(Some(format))

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::choices::AnyFormat;
 use super::exit::Failure;
+use super::meant::{self, MESH_ENDINGS};
 use super::shared_args::OutputArgs;
 use super::streams::{is_direct, is_stream};
 use super::words;
@@ -34,8 +35,11 @@ impl Target {
                     .hint("--out-format says it, for example --out-format stl"));
             }
             None => {
-                return Err(Failure::usage(format!("the name {} does not tell its format", path.display()))
-                    .hint("end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or give --out-format"));
+                return Err(meant::untold(
+                    path,
+                    &meant::mesh_formats(),
+                    &format!("{MESH_ENDINGS}, or give --out-format"),
+                ));
             }
         };
         Ok(Self { path: path.to_path_buf(), options: WriteOptions { format, ascii: args.ascii, unit: None } })

@@ -20,6 +20,7 @@ mod error;
 mod exact;
 mod exact_plan;
 mod field;
+mod foresight;
 mod frame;
 mod holes;
 mod hollow;
@@ -66,6 +67,7 @@ pub use field::{
     Built, FieldBand, FieldBuilder, FieldError, FieldOperand, FieldReport, OperandReport, field_grid, field_spacing,
     field_surface, field_values,
 };
+pub use foresight::{Foresight, foresee};
 pub use holes::{NotOpened, Opened, holes};
 pub use hollow::{Drain, HollowError, HollowOptions, hollow, plan_hollow};
 pub use morphology::{MorphologyOptions, morphology, plan_morphology};
