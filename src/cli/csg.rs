@@ -4,6 +4,7 @@ use clap::Args;
 use std::path::Path;
 
 use super::exit::{Exit, Failure};
+use super::meant;
 use super::report::RunReport;
 use super::session::Session;
 use super::solid::{self, Job};
@@ -86,10 +87,17 @@ pub(super) fn explain(text: &str, error: &LanguageError) -> Failure {
         }
         None => Failure::usage(error.to_string()),
     };
-    match error.hint() {
+    match error.hint().or_else(|| near_length(text, error)) {
         Some(hint) => failure.hint(hint),
         None => failure,
     }
+}
+
+/// The length that may be meant where one is not understood.
+fn near_length(text: &str, error: &LanguageError) -> Option<String> {
+    let LanguageError::Quantity { at, .. } = error else { return None };
+    let typed = text.get(*at..)?.split([',', ')', ';']).next()?;
+    meant::length(typed.trim()).map(|near| format!("did you mean {near}?"))
 }
 
 #[cfg(test)]

@@ -114,7 +114,7 @@ const EXAMPLES: [(&str, &[Example]); 26] = [
         "thicken",
         &[
             ("meshwright thicken part.stl --min 2mm --unit mm -o thick.stl", "no wall under 2 mm"),
-            ("meshwright thicken sheet.obj --min 2% --side front -o wall.obj", "a wall of an open sheet"),
+            ("meshwright thicken sheet.obj --min 4% --side front -o wall.obj", "a wall of an open sheet"),
             ("meshwright thicken terrain.obj --base 10% -o block.stl", "a block to print of a height map"),
         ],
     ),

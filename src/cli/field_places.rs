@@ -6,9 +6,9 @@ use super::choices::AnyFormat;
 use super::exit::Failure;
 use super::field_args::FieldArgs;
 use super::files::Made;
-use super::meant::{self, MESH_ENDINGS};
+use super::meant;
 use super::streams::is_stream;
-use super::target::{Target, check_extension};
+use super::target::{self, MESH_ENDINGS, Target, check_extension};
 use crate::io::GridFormat;
 
 /// Where one result goes.
@@ -75,7 +75,7 @@ pub fn targets(args: &FieldArgs) -> Result<Vec<Place>, Failure> {
             Some(format) => Ok(Place::Grid(path, format)),
             None if args.writing.out_format.is_none() && AnyFormat::from_path(&path).is_none() && !is_stream(&path) => {
                 let endings = format!("{MESH_ENDINGS}, or for a lattice in .vti, .nrrd, .npy or .vdb");
-                Err(meant::untold(&path, &meant::all_formats(), &endings))
+                Err(target::untold(&path, &meant::all_formats(), &endings))
             }
             None => Target::new(&path, &args.writing).map(Place::Mesh),
         }

@@ -1,19 +1,11 @@
 //! What may have been meant by words of a command line that are not understood: verbs, flags, values, endings of names.
 
-use std::path::Path;
-
 use clap::{Arg, Command};
 
-use super::exit::Failure;
 use super::words;
 use crate::io::{Format, GridFormat, Unit};
 use crate::nearest::nearest;
 use crate::picture::View;
-
-/// What to do with a name that tells no format of meshes.
-pub const MESH_ENDINGS: &str = "end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf";
-/// And with one that tells none of lattices.
-pub const GRID_ENDINGS: &str = "end it in .vti, .nrrd, .npy or .vdb";
 
 /// As many verbs that have a flag are named.
 const NAMED: usize = 3;
@@ -129,16 +121,6 @@ pub fn grid_formats() -> Vec<&'static str> {
 /// All of them.
 pub fn all_formats() -> Vec<&'static str> {
     [mesh_formats(), grid_formats()].concat()
-}
-
-/// A name that tells none of `formats`; `endings` says what would.
-pub fn untold(path: &Path, formats: &[&str], endings: &str) -> Failure {
-    let extension = path.extension().map_or(String::new(), |extension| extension.to_string_lossy().into_owned());
-    let failure = Failure::usage(format!("the name {} does not tell its format", path.display()));
-    failure.hint(match nearest(&extension, formats.iter().copied()) {
-        Some(near) => format!("did you mean {}? {endings}", path.with_extension(near).display()),
-        None => endings.to_string(),
-    })
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use super::args::{Cli, parse};
 use super::choices::AnyFormat;
 use super::exit::Failure;
 use super::meant;
+use super::typed::{line, named};
 
 /// What is wrong with `arguments` (the program's name left out), where more can be said than the parser's `error` does.
 pub fn explain(error: &clap::Error, arguments: &[OsString]) -> Option<Failure> {
@@ -100,18 +101,12 @@ fn is_a_mesh(word: &str) -> bool {
 }
 
 fn no_verb(file: &str) -> Failure {
+    let command = |words: &[&str]| line(words.iter().map(ToString::to_string));
     Failure::usage(format!("what to do with {file} is not said: a verb comes first")).hint(format!(
-        "`meshwright repair {file} -o {}` mends it, `meshwright inspect {file}` says what is wrong with it",
-        repaired(file)
+        "`{}` mends it, `{}` says what is wrong with it",
+        command(&["repair", file, "-o", &named(file, "repaired")]),
+        command(&["inspect", file])
     ))
-}
-
-/// `part.stl` as `part_repaired.stl`.
-fn repaired(file: &str) -> String {
-    let path = Path::new(file);
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let extension = path.extension().map_or("stl".into(), |extension| extension.to_string_lossy());
-    path.with_file_name(format!("{stem}_repaired.{extension}")).display().to_string()
 }
 
 /// Whether a verb takes any number of files.

@@ -43,7 +43,7 @@ pub fn foresee(mesh: &TriMesh, options: &Options, progress: &Progress) -> Result
     let bounds = sizing::bounds([&*local]).map_err(|operand| BooleanError::Empty { operand })?;
     let h = sizing::spacing(&bounds, options.voxel)?;
     let ahead = Ahead::of(&[&local], options, progress)?;
-    let plan = plan::after_a_look(&[&local], &ahead, options, h)?;
+    let plan = plan::seen(&[&local], &ahead, options, h)?;
     let mut holes = ahead.holes.reports();
     holes.iter_mut().for_each(|hole| frame.place(&mut hole.centre));
     let rims = on_rims(&local, &ahead);

@@ -85,7 +85,7 @@ pub use sizing::{LatticeError, MAX_RESOLUTION};
 pub use source::TriangleSource;
 pub use textures::{carry_texture, carry_texture_to_simpler, classes_of};
 pub use thicken::{SheetSide, ThickenError, ThickenOptions, plan_thicken, thicken};
-pub use thickness::{LengthsReport, ThicknessError, ThicknessReport, thickness};
+pub use thickness::{LengthsReport, PERCENTILES, ThicknessError, ThicknessReport, thickness};
 pub use work::Work;
 
 use outcome::Draft;

@@ -85,7 +85,6 @@ const TRIANGLES_PER_CELL: f64 = 2.2;
 const TRIANGLES_PER_LID_CELL: f64 = 1.0;
 const TRIANGLES_PER_FLAT_CELL: f64 = 0.2;
 const TRIANGLES_PER_CONTACT: f64 = 3.0;
-
 /// How many times the seconds an offset adds.
 const OFFSET_SECONDS: f64 = 5.0;
 
@@ -122,19 +121,12 @@ pub fn plan<'a>(operands: impl IntoIterator<Item: Into<Operand<'a>>>, options: &
     let meshes: Vec<&TriMesh> = local.iter().map(AsRef::as_ref).collect();
     let bounds = sizing::bounds(meshes.iter().copied()).map_err(|operand| BooleanError::Empty { operand })?;
     let h = sizing::spacing(&bounds, options.voxel)?;
-    let ahead = Ahead::of(&meshes, options, &Progress::none())?;
-    after_a_look(&meshes, &ahead, options, h)
+    seen(&meshes, &Ahead::of(&meshes, options, &Progress::none())?, options, h)
 }
 
 /// What a run over operands near the origin would cost, once they have been looked at.
-pub(super) fn after_a_look(
-    meshes: &[&TriMesh],
-    ahead: &Ahead,
-    options: &Options,
-    h: f64,
-) -> Result<Plan, BooleanError> {
-    let Ahead { rest, way, .. } = ahead;
-    let touching = ahead.touching;
+pub(super) fn seen(meshes: &[&TriMesh], ahead: &Ahead, options: &Options, h: f64) -> Result<Plan, BooleanError> {
+    let &Ahead { ref rest, ref way, touching, .. } = ahead;
     let given = Input::of(meshes).triangles;
     match way {
         Way::Exact => return Ok(Plan::of_exact(h, given, touching)),
