@@ -138,7 +138,7 @@ const EXAMPLES: [(&str, &[Example]); 26] = [
                 "both as one, with a rounded joint",
             ),
             (
-                "meshwright field 'morph(filter(a), filter(b), t)' a=a.obj b=b.obj --frames 9 -o morph.ply",
+                "meshwright field 'morph(a, b, t)' a=a.obj b=b.obj --frames 9 -o morph.ply",
                 "nine meshes on the way from one shape to another",
             ),
             ("meshwright field 'average(a, b, c; 1, 1, 2)' a=a.ply b=b.ply c=c.ply -o mean.vdb", "a weighted mean"),
@@ -149,8 +149,8 @@ const EXAMPLES: [(&str, &[Example]); 26] = [
         &[
             ("meshwright hollow part.stl -w 2mm --unit mm -o shell.stl", "a cavity, and a wall of 2 mm"),
             (
-                "meshwright hollow statue.stl -w 3% --drain 4@0,0,-50 -o shell.stl",
-                "and a hole of diameter 4 from the bottom into the cavity",
+                "meshwright hollow statue.stl -w 3% --drain 8@0,0,-50 -o shell.stl",
+                "and a hole of diameter 8 from the bottom into the cavity",
             ),
         ],
     ),

@@ -48,7 +48,7 @@ pub fn inspect(
 ) -> Result<Exit, Failure> {
     let Some(grid) = given.grids.first() else { return Err(Failure::internal("nothing was read")) };
     if args.thickness || !args.fail_on.is_empty() || args.voxels.is_set() {
-        let what = "--thickness, --fail-on, --resolution and --voxel are about a mesh, and a lattice is none";
+        let what = "--thickness, --fail-on, --resolution and --voxel are about the triangles of a mesh, and a lattice has none";
         return Err(Failure::usage(format!("{}: {what}", grid.entry.path)));
     }
     report.options = json!({ "unit": unit.map(|unit| unit.to_string()) });

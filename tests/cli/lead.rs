@@ -179,5 +179,5 @@ fn what_makes_no_difference_is_refused() {
     let grid = folder.path().join("a.vti");
     let grid = grid.to_str().expect("a name");
     run(&["sdf", sample("open_cube.off").to_str().expect("a name"), "-o", grid, "--resolution", "16"]).exits(0);
-    run(&["inspect", grid, "--resolution", "64"]).exits(2).says(&["are about a mesh"]);
+    run(&["inspect", grid, "--resolution", "64"]).exits(2).says(&["are about the triangles of a mesh"]);
 }
