@@ -44,6 +44,7 @@
 
 // In the order in which the data passes: no module imports one below it.
 mod digits;
+mod nearest;
 pub mod progress;
 pub mod mesh;
 pub mod zip;

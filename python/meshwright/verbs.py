@@ -1056,7 +1056,7 @@ def inspect(
     - ``in_format``: Format of the input, when neither its content nor its name should decide.
     - ``unit``: Unit of the numbers in files that carry none (STL, OBJ, PLY, OFF).
     - ``timeout``: Give up after this time (30s, 5m).
-    - ``resolution``: Voxels along the longest side of the bounding box, for thickness (default: 256).
+    - ``resolution``: Voxels along the longest side of the bounding box, of thickness and of the repair that is foretold (default: 256).
     - ``voxel``: Size of a voxel, instead of resolution.
     - ``threads``: Threads to use; without it those that all calls share, one for each core.
     - ``progress``: ``True`` for a bar, or a function that is told the stage and its share, 0 to 1.

@@ -13,6 +13,7 @@ use super::convert_args::ConvertArgs;
 use super::csg::{CSG_HELP, CsgArgs};
 use super::decimate::DecimateArgs;
 use super::devices::DevicesArgs;
+use super::examples;
 use super::field_args::{FieldArgs, field_help};
 use super::hollow::HollowArgs;
 use super::inspect_args::InspectArgs;
@@ -38,82 +39,82 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     /// Make one closed, oriented solid surface of a broken mesh
-    #[command(after_help = EXIT_CODES, aliases = ["fix", "heal"])]
+    #[command(after_help = examples::after("repair", EXIT_CODES), aliases = ["fix", "heal"])]
     Repair(RepairArgs),
     /// Everything inside at least one of the meshes
-    #[command(after_help = EXIT_CODES, aliases = ["add", "join", "merge", "combine"])]
+    #[command(after_help = examples::after("union", EXIT_CODES), aliases = ["add", "join", "merge", "combine"])]
     Union(BooleanArgs),
     /// Everything inside all of the meshes
-    #[command(after_help = EXIT_CODES, aliases = ["intersect", "common"])]
+    #[command(after_help = examples::after("intersection", EXIT_CODES), aliases = ["intersect", "common"])]
     Intersection(BooleanArgs),
     /// The first mesh without all the others
-    #[command(after_help = EXIT_CODES, aliases = ["subtract", "minus"])]
+    #[command(after_help = examples::after("difference", EXIT_CODES), aliases = ["subtract", "minus"])]
     Difference(BooleanArgs),
     /// Any boolean expression, such as 'a - (b | c) & d'
-    #[command(after_help = CSG_HELP)]
+    #[command(after_help = examples::after("csg", CSG_HELP))]
     Csg(CsgArgs),
     /// Grow a solid by a length on all sides
-    #[command(after_help = EXIT_CODES, aliases = ["grow", "inflate"])]
+    #[command(after_help = examples::after("dilate", EXIT_CODES), aliases = ["grow", "inflate"])]
     Dilate(GrowArgs),
     /// Shrink a solid by a length on all sides
-    #[command(after_help = EXIT_CODES, alias = "shrink")]
+    #[command(after_help = examples::after("erode", EXIT_CODES), alias = "shrink")]
     Erode(GrowArgs),
     /// Take away what a ball inside cannot reach: whiskers, fins, thin walls
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("open", EXIT_CODES))]
     Open(MorphologyArgs),
     /// Fill what a ball outside cannot reach: cracks, canals, narrow gaps
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("close", EXIT_CODES))]
     Close(MorphologyArgs),
     /// List canals, pits and gaps that a closing would fill, and fill those that you choose
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("canals", EXIT_CODES))]
     Canals(CanalArgs),
     /// Let walls that are too thin, and open sheets, grow to a thickness
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("thicken", EXIT_CODES))]
     Thicken(ThickenArgs),
     /// Signed distance to a mesh over a lattice
-    #[command(after_help = EXIT_CODES, alias = "distance")]
+    #[command(after_help = examples::after("sdf", EXIT_CODES), alias = "distance")]
     Sdf(SdfArgs),
     /// Combine, filter and morph shapes through their distance fields, by an expression
-    #[command(after_help = field_help())]
+    #[command(after_help = examples::after("field", &field_help()))]
     Field(FieldArgs),
     /// Shell a solid out: a cavity in it, walls of one thickness, and holes to drain it
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("hollow", EXIT_CODES))]
     Hollow(HollowArgs),
     /// Leave fewer triangles of a solid: a number, a share, or as far as the surface may move
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("decimate", EXIT_CODES))]
     Decimate(DecimateArgs),
     /// Write every body of a file into a file of its own
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("split", EXIT_CODES))]
     Split(SplitArgs),
     /// Say what is in a mesh file and what is wrong with it
-    #[command(after_help = EXIT_CODES, aliases = ["info", "check"])]
+    #[command(after_help = examples::after("inspect", EXIT_CODES), aliases = ["info", "check"])]
     Inspect(InspectArgs),
     /// Measure how far two meshes are from each other
-    #[command(after_help = EXIT_CODES, alias = "diff")]
+    #[command(after_help = examples::after("compare", EXIT_CODES), alias = "diff")]
     Compare(CompareArgs),
     /// Write the same triangles in another format, size or place, or a grid in another format; nothing is repaired
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("convert", EXIT_CODES))]
     Convert(ConvertArgs),
     /// Draw a mesh or a slice of a grid, or two of these for comparison, as a PNG picture
-    #[command(after_help = EXIT_CODES, alias = "draw")]
+    #[command(after_help = examples::after("render", EXIT_CODES), alias = "draw")]
     Render(RenderArgs),
     /// Show meshes, maps and slices of grids in a browser
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("view", EXIT_CODES))]
     View(ViewArgs),
     /// Make a page of the report of a run, to read in a browser
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("report", EXIT_CODES))]
     Report(ReportArgs),
     /// List the graphics adapters, and what --backend would take
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("devices", EXIT_CODES))]
     Devices(DevicesArgs),
     /// Print the licences of the program and of all that it is built of
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("licenses", EXIT_CODES))]
     Licenses,
     /// Do one of the verbs to many files, each in a process of its own, with a log and a way to go on after a stop
-    #[command(after_help = BATCH_HELP)]
+    #[command(after_help = examples::after("batch", BATCH_HELP))]
     Batch(BatchArgs),
     /// Print the JSON schema of the reports that --json and --report write
-    #[command(after_help = EXIT_CODES)]
+    #[command(after_help = examples::after("schema", EXIT_CODES))]
     Schema,
 }
 

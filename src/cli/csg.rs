@@ -4,6 +4,7 @@ use clap::Args;
 use std::path::Path;
 
 use super::exit::{Exit, Failure};
+use super::meant;
 use super::report::RunReport;
 use super::session::Session;
 use super::solid::{self, Job};
@@ -17,10 +18,7 @@ Operators, from the one that binds tightest, grouping from the left as in Python
   a & b   inside both
   a ^ b   inside exactly one
   a | b   inside at least one
-Parentheses group. A name is letters, digits and _, and begins with no digit.
-
-Example:
-  meshwright csg 'a - (b | c)' a=block.stl b=hole.obj c=slot.ply -o part.3mf";
+Parentheses group. A name is letters, digits and _, and begins with no digit.";
 
 /// `csg EXPR NAME=FILE... -o OUT`.
 #[derive(Debug, Args)]
@@ -89,10 +87,17 @@ pub(super) fn explain(text: &str, error: &LanguageError) -> Failure {
         }
         None => Failure::usage(error.to_string()),
     };
-    match error.hint() {
+    match error.hint().or_else(|| near_length(text, error)) {
         Some(hint) => failure.hint(hint),
         None => failure,
     }
+}
+
+/// The length that may be meant where one is not understood.
+fn near_length(text: &str, error: &LanguageError) -> Option<String> {
+    let LanguageError::Quantity { at, .. } = error else { return None };
+    let typed = text.get(*at..)?.split([',', ')', ';']).next()?;
+    meant::length(typed.trim()).map(|near| format!("did you mean {near}?"))
 }
 
 #[cfg(test)]

@@ -178,3 +178,68 @@ pub struct CrossingEntry {
     /// The length of all of them, model units.
     pub length: f64,
 }
+
+/// Defects of one kind that hang together.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct WorstEntry {
+    /// Their kind: `open`, `self`, `nonmanifold`, `inconsistent`, `nonmanifold-vertex`, `duplicate` or `degenerate`.
+    pub kind: String,
+    /// How many there are.
+    pub count: usize,
+    /// The middle of the box around them, model units.
+    pub at: [f64; 3],
+    /// The diagonal of that box, model units.
+    pub size: f64,
+    /// The length of their edges together, model units; 0 of triangles and vertices.
+    pub length: f64,
+    /// What `repair` would do about them.
+    pub repair: String,
+}
+
+/// Groups of defects of one kind that are not told one by one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct FurtherEntry {
+    /// Their kind, as above.
+    pub kind: String,
+    /// How many groups.
+    pub groups: usize,
+    /// How many defects in all of them.
+    pub count: usize,
+}
+
+/// Which way a repair goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum WayEntry {
+    /// Every surface stays as it is.
+    AsItIs,
+    /// Surfaces are cut exactly where they cross, and holes are closed from their rims.
+    Exact,
+    /// Surface is made anew from voxels where that is needed.
+    Voxels,
+}
+
+/// What a repair would lose.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct DetailEntry {
+    /// Which way it goes.
+    pub way: WayEntry,
+    /// The size of its voxels, model units; nothing where none are made.
+    pub voxel: Option<f64>,
+    /// Shares of the walls and gaps, measured along rays, between which that lies which is under two voxels; nothing where it is not measured.
+    pub thin: Option<[f64; 2]>,
+    /// Whether no ray meets a wall: what there is encloses nothing.
+    pub sheet: bool,
+    /// A voxel of which 99 % of the walls and gaps are two thick, model units; nothing where it is not measured, or none is small enough.
+    pub voxel_that_keeps: Option<f64>,
+}
+
+/// What to do next.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct NextEntry {
+    /// The command to type; nothing where there is nothing to do, or nothing to type it into.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub command: Option<String>,
+    /// What it does, or why there is none.
+    pub what: String,
+}

@@ -7,6 +7,7 @@ use serde_json::json;
 
 use super::class::Class;
 use super::length::QuantityError;
+use super::meant;
 use super::words;
 use crate::arrange::ArrangeError;
 use crate::mesh::{SolidError, Validity};
@@ -261,6 +262,10 @@ impl From<QuantityError> for Failure {
             QuantityError::UnitUnknown { .. } => {
                 failure.hint("say what the file's numbers are, for example --unit mm, or give a plain number")
             }
+            QuantityError::Malformed { text, .. } => match meant::length(&text) {
+                Some(near) => failure.hint(format!("did you mean {near}?")),
+                None => failure,
+            },
             QuantityError::VoxelItself { .. } => failure.hint("a LEN such as 0.4mm, 1% or 0.4, or --resolution N"),
             _ => failure,
         }

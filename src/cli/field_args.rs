@@ -83,11 +83,5 @@ pub(super) fn field_help() -> String {
 }
 
 const FIELD_HELP: &str = "\
-Examples:
-  meshwright field 'offset(a, -0.4mm)' a=part.stl -o inner.stl
-  meshwright field 'blend(a, b, 2mm)' a=body.stl b=handle.obj -o mug.3mf
-  meshwright field 'morph(filter(a), filter(b), t)' a=A.obj b=B.obj --frames 25 -o morph.ply
-  meshwright field 'average(a, b, c; 1, 1, 2)' a=1.ply b=2.ply c=3.ply -o mean.vdb
-
 Operators: -a (outside of a), a - b, a & b, a ^ b, a | b, from the one that binds tightest.
 ";

@@ -6,8 +6,9 @@ use super::choices::AnyFormat;
 use super::exit::Failure;
 use super::field_args::FieldArgs;
 use super::files::Made;
+use super::meant;
 use super::streams::is_stream;
-use super::target::{Target, check_extension};
+use super::target::{self, MESH_ENDINGS, Target, check_extension};
 use crate::io::GridFormat;
 
 /// Where one result goes.
@@ -73,9 +74,8 @@ pub fn targets(args: &FieldArgs) -> Result<Vec<Place>, Failure> {
             }
             Some(format) => Ok(Place::Grid(path, format)),
             None if args.writing.out_format.is_none() && AnyFormat::from_path(&path).is_none() && !is_stream(&path) => {
-                Err(Failure::usage(format!("the name {} does not tell its format", path.display())).hint(
-                    "end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or for a lattice in .vti, .nrrd, .npy or .vdb",
-                ))
+                let endings = format!("{MESH_ENDINGS}, or for a lattice in .vti, .nrrd, .npy or .vdb");
+                Err(target::untold(&path, &meant::all_formats(), &endings))
             }
             None => Target::new(&path, &args.writing).map(Place::Mesh),
         }

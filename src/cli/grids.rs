@@ -10,14 +10,16 @@ use super::entries::GridEntry;
 use super::exit::{Exit, Failure};
 use super::given::Given;
 use super::inspect_args::InspectArgs;
+use super::meant;
 use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
 use super::slice::GridInput;
 use super::streams::{self, is_direct};
 use super::table::{self, Row};
+use super::target::{self, GRID_ENDINGS};
 use super::words::{self, UnitName};
-use super::{machine, output, target};
+use super::{machine, output};
 use crate::io::{DistanceSamples, Format, GridFile, GridFormat, GridMeasures, GridValues, Unit};
 use crate::progress::Stage;
 
@@ -45,8 +47,8 @@ pub fn inspect(
     report: &mut RunReport,
 ) -> Result<Exit, Failure> {
     let Some(grid) = given.grids.first() else { return Err(Failure::internal("nothing was read")) };
-    if args.thickness || !args.fail_on.is_empty() {
-        let what = "--thickness and --fail-on are about the triangles of a mesh, and a lattice has none";
+    if args.thickness || !args.fail_on.is_empty() || args.voxels.is_set() {
+        let what = "--thickness, --fail-on, --resolution and --voxel are about the triangles of a mesh, and a lattice has none";
         return Err(Failure::usage(format!("{}: {what}", grid.entry.path)));
     }
     report.options = json!({ "unit": unit.map(|unit| unit.to_string()) });
@@ -118,8 +120,10 @@ fn target(args: &ConvertArgs, label: &str) -> Result<GridFormat, Failure> {
             Err(Failure::usage("standard output has no name that tells its format")
                 .hint("--out-format says it, for example --out-format nrrd"))
         }
-        None => Err(Failure::usage(format!("the name {} does not tell its format", args.output.display()))
-            .hint("end it in .vti, .nrrd, .npy or .vdb, or give --out-format")),
+        None => {
+            let endings = format!("{GRID_ENDINGS}, or give --out-format");
+            Err(target::untold(&args.output, &meant::grid_formats(), &endings))
+        }
     }
 }
 

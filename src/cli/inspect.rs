@@ -11,7 +11,7 @@ use super::inspect_args::InspectArgs;
 use super::report::RunReport;
 use super::result::RunResult;
 use super::session::Session;
-use super::{grids, holes, page, summary, table, words};
+use super::{grids, holes, lead, page, summary, table, words};
 use crate::arrange::{ArrangeError, crossing_curves};
 use crate::io::Unit;
 use crate::mesh::{Bounds, MassProperties, Overhang, TriMesh, ValidateOptions, Validity, validate};
@@ -45,11 +45,12 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
         true => Some(report.timed(Stage::Fill, |_| holes_of(args, input, unit, session))?),
         false => None,
     };
-    let result = RunResult::Inspection { mass, overhang, crossings, thickness, holes };
+    let lead = lead::of(args, (input, &validity), unit, session, report)?;
+    let result = RunResult::Inspection { mass, overhang, crossings, thickness, holes, lead };
     let name = unit.map(|unit| unit.to_string());
     session.show(report, |_| page::of_inspection(input, &result, name.as_deref(), session))?;
     session.clear_bar();
-    let RunResult::Inspection { mass, overhang, crossings, thickness, holes } = &result else {
+    let RunResult::Inspection { mass, overhang, crossings, thickness, holes, lead } = &result else {
         return Err(Failure::internal("an inspection was wanted"));
     };
     if !args.common.json {
@@ -64,6 +65,7 @@ pub fn run(args: &InspectArgs, session: &Session, report: &mut RunReport) -> Res
             true => vec![("hole", "none".to_string())],
             false => holes::rows(list, name.as_deref()),
         }));
+        rows.extend(lead::rows(lead, name.as_deref()));
         super::streams::write_stream(table::table(&rows).as_bytes())?;
     }
     report.result = Some(result);

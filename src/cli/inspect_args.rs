@@ -7,13 +7,13 @@ use clap::Args;
 use super::choices::{Defect, FillChoice};
 use super::shared_args::{CommonArgs, InputArgs, VoxelArgs};
 
-/// The help of --resolution, where voxels are for one measurement only.
-const OF_THICKNESS: &str = "Voxels along the longest side of the bounding box, for --thickness";
+/// The help of --resolution, where no voxel is made.
+const OF_REPAIR: &str =
+    "Voxels along the longest side of the bounding box, of --thickness and of the repair that is foretold";
 
 /// `inspect IN`.
 #[derive(Debug, Args)]
-#[command(mut_arg("resolution", |flag| flag.requires("thickness").help(OF_THICKNESS)))]
-#[command(mut_arg("voxel", |flag| flag.requires("thickness")))]
+#[command(mut_arg("resolution", |flag| flag.help(OF_REPAIR)))]
 pub struct InspectArgs {
     /// The mesh, or the grid (VTI, NRRD, NPY, VDB), to look at
     #[arg(value_name = "IN")]
@@ -30,7 +30,7 @@ pub struct InspectArgs {
     /// How the holes would be closed
     #[arg(long, value_enum, default_value_t = FillChoice::Auto, requires = "holes")]
     pub fill: FillChoice,
-    /// The size of the voxels of --thickness.
+    /// The size of the voxels of --thickness, and of the repair that is foretold.
     #[command(flatten)]
     pub voxels: VoxelArgs,
     /// Exit with 3 when the mesh has one of these defects

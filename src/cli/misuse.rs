@@ -6,9 +6,11 @@ use std::path::Path;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, CommandFactory};
 
-use super::args::Cli;
+use super::args::{Cli, parse};
 use super::choices::AnyFormat;
 use super::exit::Failure;
+use super::meant;
+use super::typed::{line, named};
 
 /// What is wrong with `arguments` (the program's name left out), where more can be said than the parser's `error` does.
 pub fn explain(error: &clap::Error, arguments: &[OsString]) -> Option<Failure> {
@@ -18,6 +20,9 @@ pub fn explain(error: &clap::Error, arguments: &[OsString]) -> Option<Failure> {
     };
     let command = Cli::command();
     let words: Vec<String> = arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    if let Some(word) = told(ContextKind::InvalidSubcommand).filter(|word| !is_a_mesh(word)) {
+        return Some(unknown_verb(&word, &command));
+    }
     let Some(verb) = words.iter().find_map(|word| command.find_subcommand(word)) else {
         let after_a_flag = |n: usize| n > 0 && words[n - 1].starts_with('-');
         let mut files = (0..words.len()).filter(|&n| !words[n].starts_with('-') && is_a_mesh(&words[n]));
@@ -26,15 +31,67 @@ pub fn explain(error: &clap::Error, arguments: &[OsString]) -> Option<Failure> {
     };
     match error.kind() {
         ErrorKind::UnknownArgument => {
-            let extra = told(ContextKind::InvalidArg).filter(|word| !word.starts_with('-'))?;
-            one_too_many(verb, &extra, &words)
+            let word = told(ContextKind::InvalidArg)?;
+            match word.starts_with('-') {
+                true => unknown_flag(error, verb, &word, &command),
+                false => one_too_many(verb, &word, &words),
+            }
         }
+        ErrorKind::ValueValidation => wrong_value(error, arguments),
         ErrorKind::WrongNumberOfValues | ErrorKind::TooFewValues if takes_several(verb) => Some(
             Failure::usage(format!("`{}` combines two files or more, and one was given", verb.get_name()))
                 .hint("`meshwright repair` makes one solid of all that is in one file"),
         ),
         _ => None,
     }
+}
+
+fn unknown_verb(word: &str, program: &Command) -> Failure {
+    Failure::usage(format!("`{word}` is no verb")).hint(match meant::verb(word, program) {
+        Some(verb) => format!("did you mean `{verb}`?"),
+        None => "`meshwright --help` lists all verbs".into(),
+    })
+}
+
+/// A flag that the verb does not have, where another verb has it, or one is near that the parser has not found.
+fn unknown_flag(error: &clap::Error, verb: &Command, word: &str, program: &Command) -> Option<Failure> {
+    let is_of_others = program.get_subcommands().flat_map(Command::get_arguments).any(|argument| {
+        argument.get_long().is_some_and(|long| word.strip_prefix("--") == Some(long))
+            || argument.get_short().is_some_and(|short| word == format!("-{short}"))
+    });
+    if error.get(ContextKind::SuggestedArg).is_some() && !is_of_others {
+        return None;
+    }
+    let hint = meant::flag(word, verb, program)?;
+    Some(Failure::usage(format!("`{}` has no flag {word}", verb.get_name())).hint(hint))
+}
+
+/// A value that is not understood, where one is near that is.
+fn wrong_value(error: &clap::Error, arguments: &[OsString]) -> Option<Failure> {
+    let told = |error: &clap::Error, kind| match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text.clone()),
+        _ => None,
+    };
+    let (flag, value) = (told(error, ContextKind::InvalidArg)?, told(error, ContextKind::InvalidValue)?);
+    let kind = flag.split_once(['<']).and_then(|(_, name)| name.split_once('>')).map(|(name, _)| name)?;
+    let is_understood = |near: &String| {
+        let replaced = arguments.iter().map(|word| match word.to_str() {
+            Some(word) if word == value => near.into(),
+            Some(word) if word.starts_with('-') => match word.split_once('=') {
+                Some((name, given)) if given == value => format!("{name}={near}").into(),
+                _ => word.into(),
+            },
+            _ => word.clone(),
+        });
+        match parse(std::iter::once("meshwright".into()).chain(replaced)) {
+            Ok(_) => true,
+            Err(other) => told(&other, ContextKind::InvalidArg).as_ref() != Some(&flag),
+        }
+    };
+    let near = meant::values(kind, &value).into_iter().find(is_understood)?;
+    let text = error.render().to_string();
+    let first = text.lines().next().unwrap_or_default();
+    Some(Failure::usage(first.strip_prefix("error: ").unwrap_or(first)).hint(format!("did you mean {near}?")))
 }
 
 /// Whether a word is a file, or is named as one.
@@ -44,18 +101,12 @@ fn is_a_mesh(word: &str) -> bool {
 }
 
 fn no_verb(file: &str) -> Failure {
+    let command = |words: &[&str]| line(words.iter().map(ToString::to_string));
     Failure::usage(format!("what to do with {file} is not said: a verb comes first")).hint(format!(
-        "`meshwright repair {file} -o {}` mends it, `meshwright inspect {file}` says what is wrong with it",
-        repaired(file)
+        "`{}` mends it, `{}` says what is wrong with it",
+        command(&["repair", file, "-o", &named(file, "repaired")]),
+        command(&["inspect", file])
     ))
-}
-
-/// `part.stl` as `part_repaired.stl`.
-fn repaired(file: &str) -> String {
-    let path = Path::new(file);
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let extension = path.extension().map_or("stl".into(), |extension| extension.to_string_lossy());
-    path.with_file_name(format!("{stem}_repaired.{extension}")).display().to_string()
 }
 
 /// Whether a verb takes any number of files.
@@ -115,7 +166,54 @@ mod tests {
         ] {
             assert!(explained(line).contains(words), "{line}: {}", explained(line));
         }
-        for line in ["mend x", "repair a.stl --wrong -o b.stl", "repair a.stl -o", "union --resolution 7"] {
+        for line in ["repair a.stl --wrong -o b.stl", "repair a.stl -o", "union --resolution 7"] {
+            assert_eq!(explained(line), "", "{line}");
+        }
+    }
+
+    #[test]
+    fn what_is_near_is_said_and_nothing_else() {
+        for (line, message, hint) in [
+            ("reapir a.stl -o b.stl", "`reapir` is no verb", "did you mean `repair`?"),
+            ("substract a.stl b.stl -o c.stl", "`substract` is no verb", "did you mean `difference`?"),
+            ("mend a.stl", "`mend` is no verb", "`meshwright --help` lists all verbs"),
+            (
+                "inspect a.stl --keep-partial",
+                "`inspect` has no flag --keep-partial",
+                "it is a flag of `repair`, `union`",
+            ),
+            ("repair a.stl -o b.stl --max-deviation 1", "has no flag --max-deviation", "it is a flag of `decimate`"),
+            (
+                "inspect a.stl --max-deviaton 1",
+                "has no flag --max-deviaton",
+                "did you mean --max-deviation? it is a flag of",
+            ),
+            ("repair a.stl -o b.stl -w 2", "`repair` has no flag -w", "it is a flag of `hollow`"),
+            ("dilate a.stl -o b.stl -R 2", "`dilate` has no flag -R", "did you mean -r?"),
+            ("repair a.stl -o b.stl --voxel 0.4mn", "`0.4mn` is not a length", "did you mean 0.4mm?"),
+            ("repair a.stl -o b.stl --voxel=0.4mn", "`0.4mn` is not a length", "did you mean 0.4mm?"),
+            ("repair a.stl -o b.stl --unit inhc", "is no unit of length", "did you mean inch?"),
+            ("repair a.stl -o b.stl --out-format sltt", "is no format known here", "did you mean stl?"),
+            ("repair a.stl -o b.stl --simplify of", "is not a length", "did you mean off?"),
+            ("repair a.stl -o b.stl --timeout 5mn", "is not a duration", "did you mean 5min?"),
+            ("render a.stl -o b.png --view fornt", "wanted one of iso", "did you mean front?"),
+            ("render a.stl -o b.png --slice Z=3", "is not an axis", "did you mean z=3?"),
+            ("hollow a.stl -o b.stl -w 1 --drain 3mn@0,0,0", "`3mn` is not a length", "did you mean 3mm@0,0,0?"),
+        ] {
+            let told = explained(line);
+            let (said, tried) = told.split_once('\n').unwrap_or_default();
+            assert!(said.contains(message) && tried.contains(hint), "{line}: {told}");
+        }
+        // Nothing is near, or the parser says it by itself.
+        for line in [
+            "repair a.stl -o b.stl --colour red",
+            "repair a.stl -o b.stl --voxel 3furlongs",
+            "repair a.stl -o b.stl --in-format vtii",
+            "repair a.stl -o b.stl --unit parsec",
+            "render a.stl -o b.png --slice w=3",
+            "repair a.stl -o b.stl --preset prnit",
+            "repair a.stl -o b.stl --resoluton 7",
+        ] {
             assert_eq!(explained(line), "", "{line}");
         }
     }

@@ -7,6 +7,7 @@ use clap::Args;
 use super::exit::Failure;
 use super::words;
 use crate::io::Loaded;
+use crate::nearest::apart;
 
 /// As many names are listed where one is not known.
 const LISTED: usize = 5;
@@ -60,7 +61,7 @@ fn unknown(asked: &str, names: &[&str], label: &str) -> Failure {
         .filter(|(_, name)| !name.is_empty())
         .map(|(n, name)| {
             let [asked, name] = [asked, name].map(str::to_lowercase);
-            let apart = if name.contains(&asked) { 0 } else { strsim::damerau_levenshtein(&asked, &name) };
+            let apart = if name.contains(&asked) { 0 } else { apart(&asked, &name) };
             (apart, n)
         })
         .collect();

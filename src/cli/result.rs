@@ -1,13 +1,33 @@
 //! What each verb says of what it found and made: one tagged value in the report.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use super::entries::{AsideEntry, CrossingEntry, DeviceReport, GridEntry, ObjectEntry, OutputEntry, SliceEntry};
+use super::entries::{
+    AsideEntry, CrossingEntry, DetailEntry, DeviceReport, FurtherEntry, GridEntry, NextEntry, ObjectEntry, OutputEntry,
+    SliceEntry, WorstEntry,
+};
 use crate::compare::Comparison;
 use crate::decimate::DecimateReport;
 use crate::fit::FitReport;
 use crate::mesh::{MassProperties, Overhang};
 use crate::pipeline::{DistancePlan, DistanceReport, Dropped, FieldReport, HoleReport, Plan, Report, ThicknessReport};
+
+/// What leads from what `inspect` has found to a solid.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Lead {
+    /// Groups of defects that hang together, the worst first, and at most a hundred; of a mesh that is no solid.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub worst: Vec<WorstEntry>,
+    /// The groups beyond these, by kind.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub further: Vec<FurtherEntry>,
+    /// What a repair would lose; of a mesh that is no solid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detail: Option<DetailEntry>,
+    /// What to do next, the likeliest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub next: Vec<NextEntry>,
+}
 
 /// What a run found and made. Of a run that failed there is what it had found until then, and nothing that it wrote.
 #[derive(Debug, Serialize, schemars::JsonSchema)]
@@ -71,6 +91,9 @@ pub enum RunResult {
         /// The holes that `--holes` asked for, the longest rim first, and what would be done over each.
         #[serde(skip_serializing_if = "Option::is_none")]
         holes: Option<Vec<HoleReport>>,
+        /// What leads from there to a solid.
+        #[serde(flatten)]
+        lead: Lead,
     },
     /// Of `inspect` with values over a lattice.
     Lattice {

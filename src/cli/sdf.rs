@@ -12,14 +12,16 @@ use super::epilogue;
 use super::exit::{Asked, Exit, Failure, INPUTS_ALONE};
 use super::input::{self, Input};
 use super::length::{BandChoice, Scale};
+use super::meant;
 use super::report::RunReport;
 use super::result::RunResult;
 use super::sdf_args::SdfArgs;
 use super::session::Session;
 use super::streams::{self, is_stream};
 use super::table::{self, Row};
+use super::target::{self, GRID_ENDINGS};
 use super::words::{self, UnitName};
-use super::{backend, machine, output, summary, target, weights};
+use super::{backend, machine, output, summary, weights};
 use crate::io::{DistanceSamples, GridFormat, SampleBlocks, Unit};
 use crate::lattice::Slot;
 use crate::mesh::Validity;
@@ -74,8 +76,7 @@ fn format(args: &SdfArgs) -> Result<Option<GridFormat>, Failure> {
                 .hint("--out-format says it, for example --out-format nrrd"));
         }
         (None, None) => {
-            return Err(Failure::usage(format!("the name {} does not tell its format", path.display()))
-                .hint("end it in .vti, .nrrd, .npy or .vdb, or give --out-format"));
+            return Err(target::untold(path, &meant::grid_formats(), &format!("{GRID_ENDINGS}, or give --out-format")));
         }
     };
     Ok(Some(format))

@@ -75,11 +75,14 @@ pub struct CommonArgs {
     pub verbose: bool,
 }
 
+/// Voxels along the longest side where nothing is said.
+const USUAL: u32 = 256;
+
 /// The size of voxels.
 #[derive(Debug, Clone, Copy, Args)]
 pub struct VoxelArgs {
     /// Voxels along the longest side of the bounding box
-    #[arg(long, value_name = "N", default_value_t = 256, value_parser = parse_resolution, conflicts_with = "voxel")]
+    #[arg(long, value_name = "N", default_value_t = USUAL, value_parser = parse_resolution, conflicts_with = "voxel")]
     pub resolution: u32,
     /// Size of a voxel, instead of --resolution
     #[arg(long, value_name = "LEN", allow_hyphen_values = true)]
@@ -87,6 +90,11 @@ pub struct VoxelArgs {
 }
 
 impl VoxelArgs {
+    /// Whether another size is asked for than the usual one.
+    pub fn is_set(&self) -> bool {
+        self.voxel.is_some() || self.resolution != USUAL
+    }
+
     /// The size that is asked for, for a model in `unit` whose bounding box has this diagonal, model units.
     pub fn size(&self, unit: Option<Unit>, diagonal: f64) -> Result<VoxelSize, Failure> {
         match self.voxel {

@@ -11,6 +11,7 @@ use super::entries::OutputEntry;
 use super::exit::{Exit, Failure};
 use super::files::{self, Made};
 use super::input::{self, Input};
+use super::meant;
 use super::output::write_verified;
 use super::paint::{self, Arranged};
 use super::report::RunReport;
@@ -20,7 +21,7 @@ use super::shared_args::{CommonArgs, InputArgs, OutputArgs};
 use super::streams::is_stream;
 use super::summary;
 use super::table::{self, Row};
-use super::target::Target;
+use super::target::{self, MESH_ENDINGS, Target};
 use super::words::{self, UnitName};
 use crate::io::{Colours, Format, Loaded, Paint, Part, Unit, WriteOptions};
 use crate::ldi::Operands;
@@ -120,9 +121,8 @@ impl Names {
         let text = path.as_os_str().to_string_lossy();
         let is_folder = path.is_dir() || text.ends_with(std::path::MAIN_SEPARATOR) || path.extension().is_none();
         if !is_folder && args.writing.out_format.is_none() && Format::from_path(path).is_none() {
-            return Err(Failure::usage(format!("the name {} does not tell its format", path.display())).hint(
-                "end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or give --out-format; or name a folder",
-            ));
+            let endings = format!("{MESH_ENDINGS}, or give --out-format; or name a folder");
+            return Err(target::untold(path, &meant::mesh_formats(), &endings));
         }
         Ok(Self { folder: is_folder.then(|| path.clone()), name: path.clone() })
     }

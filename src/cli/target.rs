@@ -4,10 +4,17 @@ use std::path::{Path, PathBuf};
 
 use super::choices::AnyFormat;
 use super::exit::Failure;
+use super::meant;
 use super::shared_args::OutputArgs;
 use super::streams::{is_direct, is_stream};
 use super::words;
 use crate::io::{Format, Unit, WriteOptions};
+use crate::nearest::nearest;
+
+/// What to do with a name that tells no format of meshes.
+pub const MESH_ENDINGS: &str = "end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf";
+/// And with one that tells none of lattices.
+pub const GRID_ENDINGS: &str = "end it in .vti, .nrrd, .npy or .vdb";
 
 /// Where a mesh goes, and how it is encoded.
 pub struct Target {
@@ -34,8 +41,7 @@ impl Target {
                     .hint("--out-format says it, for example --out-format stl"));
             }
             None => {
-                return Err(Failure::usage(format!("the name {} does not tell its format", path.display()))
-                    .hint("end it in .stl, .obj, .ply, .off, .glb, .gltf or .3mf, or give --out-format"));
+                return Err(untold(path, &meant::mesh_formats(), &format!("{MESH_ENDINGS}, or give --out-format")));
             }
         };
         Ok(Self { path: path.to_path_buf(), options: WriteOptions { format, ascii: args.ascii, unit: None } })
@@ -70,6 +76,16 @@ impl Target {
             _ => None,
         }
     }
+}
+
+/// A name that tells none of `formats`; `endings` says what would.
+pub fn untold(path: &Path, formats: &[&str], endings: &str) -> Failure {
+    let extension = path.extension().map_or(String::new(), |extension| extension.to_string_lossy().into_owned());
+    let failure = Failure::usage(format!("the name {} does not tell its format", path.display()));
+    failure.hint(match nearest(&extension, formats.iter().copied()) {
+        Some(near) => format!("did you mean {}? {endings}", path.with_extension(near).display()),
+        None => endings.to_string(),
+    })
 }
 
 /// Extensions that say what is in a file, beside those of the formats for meshes and lattices.

@@ -1,5 +1,7 @@
 //! Numbers and quantities in words.
 
+use glam::DVec3;
+
 pub(crate) use crate::digits::{count, factor, number, rounded_down, rounded_up};
 use crate::io::Unit;
 
@@ -46,6 +48,12 @@ pub fn length(x: f64, unit: UnitName<'_>) -> String {
 /// `97 x 80 x 104 mm`.
 pub fn size(size: [f64; 3], unit: UnitName<'_>) -> String {
     with_unit(&size.map(number).join(" x "), unit)
+}
+
+/// A place; what is beside the rest nothing is 0.
+pub fn around(at: DVec3) -> String {
+    let least = 1e-9 * at.abs().max_element();
+    at.to_array().map(|x| number(if x.abs() < least { 0.0 } else { x })).join(" ")
 }
 
 /// An area.

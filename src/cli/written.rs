@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::entries::InputEntry;
 use super::exit::{Exit, Failure};
 use super::report::{RunReport, SCHEMA};
-use super::result::RunResult;
+use super::result::{Lead, RunResult};
 use crate::pipeline::StageTime;
 
 /// The verbs whose reports there may be.
@@ -120,6 +120,7 @@ fn result(value: &Value) -> serde_json::Result<Option<RunResult>> {
             crossings: field(value, "crossings")?,
             thickness: field(value, "thickness")?,
             holes: field(value, "holes")?,
+            lead: Lead::deserialize(value)?,
         }),
         _ => None,
     })

@@ -50,7 +50,7 @@ impl Unit {
     }
 
     /// The word that the 3MF specification uses.
-    pub(super) fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Micrometre => "micron",
             Self::Millimetre => "millimeter",

@@ -90,6 +90,8 @@ pub struct Cluster {
     pub count: usize,
     /// The triangles that have them, ascending.
     pub triangles: Vec<u32>,
+    /// The vertices that they are at, ascending; of welded ones the first stands for all.
+    pub vertices: Vec<u32>,
     /// The length of their edges, together, model units; 0 of triangles and vertices.
     pub length: f64,
     /// Where they are.
@@ -180,7 +182,9 @@ fn gathered(mesh: &TriMesh, kind: DefectKind, items: Vec<Item>) -> Vec<Cluster> 
 fn cluster<'a>(mesh: &TriMesh, kind: DefectKind, items: impl Iterator<Item = &'a Item>) -> Option<Cluster> {
     let (mut triangles, mut points, mut count, mut length) = (Vec::new(), Vec::new(), 0, 0.0);
     let mut rim: Vec<[DVec3; 2]> = Vec::new();
+    let mut vertices = Vec::new();
     for item in items {
+        vertices.extend(&item.at);
         count += 1;
         triangles.extend(&item.of);
         let at: Vec<DVec3> = item.at.iter().map(|&v| mesh.positions[v as usize]).collect();
@@ -192,6 +196,8 @@ fn cluster<'a>(mesh: &TriMesh, kind: DefectKind, items: impl Iterator<Item = &'a
     }
     triangles.sort_unstable();
     triangles.dedup();
+    vertices.sort_unstable();
+    vertices.dedup();
     let bounds = Bounds::of(points.iter().copied())?;
     let normal = |&t: &u32| {
         let [a, b, c] = mesh.corners(t as usize);
@@ -206,7 +212,7 @@ fn cluster<'a>(mesh: &TriMesh, kind: DefectKind, items: impl Iterator<Item = &'a
         false => triangles.iter().map(normal).sum::<DVec3>().normalize_or_zero(),
     };
     let place = Place { at, size: bounds.diagonal(), from };
-    Some(Cluster { kind, count, triangles, length, place })
+    Some(Cluster { kind, count, triangles, vertices, length, place })
 }
 
 /// The ends of an edge in the order in which a triangle has them.

@@ -1,15 +1,15 @@
 //! What is known of a run before it is run: what has to be made, and which way that will go.
 
 use super::apart::Apart;
-use super::holes::planned;
-use super::{BooleanError, Method, Options};
+use super::holes::{self, planned};
+use super::{BooleanError, Method, Options, StandingReport};
 use crate::ldi::Expression;
 use crate::mesh::edges::Edges;
 use crate::mesh::weld::{has_repeated_index, welded_triangles};
 use crate::mesh::{TriMesh, intersecting_triangles};
 use crate::progress::Progress;
 use crate::survey::Soup;
-use crate::zip::{Zipped, zip};
+use crate::zip::{ZipReport, Zipped, zip};
 
 /// Which way a run will go.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,16 +29,22 @@ pub(super) struct Ahead {
     /// How many of its triangles touch others.
     pub touching: usize,
     pub way: Way,
+    /// What becomes of the holes of one operand, where it has some once its cracks are closed; else none.
+    pub holes: holes::Plan,
+    /// What is done to close cracks.
+    pub zip: Option<ZipReport>,
+    /// What stands as it is.
+    pub standing: StandingReport,
 }
 
 impl Ahead {
     /// Looks at operands.
-    pub(super) fn of(operands: &[&TriMesh], options: &Options) -> Result<Self, BooleanError> {
-        let progress = Progress::none();
-        let soup = Soup::of(operands, options.orient, &progress)?.with_inside(options.inside);
+    pub(super) fn of(operands: &[&TriMesh], options: &Options, progress: &Progress) -> Result<Self, BooleanError> {
+        let soup = Soup::of(operands, options.orient, progress)?.with_inside(options.inside);
         // Which shells stand does not depend on the expression, only what becomes of them does.
-        let apart = Apart::find(&soup, &Expression::union(operands.len()), options, &progress)?;
+        let apart = Apart::find(&soup, &Expression::union(operands.len()), options, progress)?;
         let rest = apart.rest(&soup);
+        let mut holes = holes::Plan::default();
         let way = match options.method {
             _ if rest.mesh.triangles.is_empty() || !options.keeps() => Way::Voxel,
             Method::Voxel => Way::Voxel,
@@ -46,28 +52,32 @@ impl Ahead {
             Method::Exact => Way::Exact,
             Method::Auto => match unbalanced(operands, &apart) {
                 open if !open.is_empty() && options.tolerance != Some(0.0) => {
-                    return Self::after_cracks(operands, options);
+                    return Self::after_cracks(operands, options, progress);
                 }
                 open if open.is_empty() || apart.open_balances() => Way::Exact,
                 open if operands.len() > 1 => Way::Sealed(open),
-                _ if planned(&rest, options, &progress)?.is_whole() => Way::Exact,
-                _ => Way::Voxel,
+                _ => {
+                    holes = planned(&rest, options, progress)?;
+                    if holes.is_whole() { Way::Exact } else { Way::Voxel }
+                }
             },
         };
         let touching = match apart.touching() {
             // Nothing has been looked for where no surface could have stood.
-            0 if way != Way::Voxel => intersecting_triangles(&rest.mesh, &progress)?.len(),
+            0 if way != Way::Voxel => intersecting_triangles(&rest.mesh, progress)?.len(),
             touching => touching,
         };
-        Ok(Self { rest: rest.mesh, touching, way })
+        Ok(Self { rest: rest.mesh, touching, way, holes, zip: None, standing: apart.report() })
     }
 
     /// The same of operands whose cracks are closed first.
-    fn after_cracks(operands: &[&TriMesh], options: &Options) -> Result<Self, BooleanError> {
-        let zipped = operands.iter().map(|mesh| zip(mesh, options.tolerance, &Progress::none()));
+    fn after_cracks(operands: &[&TriMesh], options: &Options, progress: &Progress) -> Result<Self, BooleanError> {
+        let zipped = operands.iter().map(|mesh| zip(mesh, options.tolerance, progress));
         let zipped: Vec<Option<Zipped>> = zipped.collect::<Result<_, _>>()?;
         let meshes = zipped.iter().zip(operands).map(|(zipped, mesh)| zipped.as_ref().map_or(*mesh, |z| &z.mesh));
-        Self::of(&meshes.collect::<Vec<_>>(), &Options { tolerance: Some(0.0), ..*options })
+        let done = zipped.iter().flatten().map(|zipped| zipped.report).reduce(ZipReport::with);
+        let options = Options { tolerance: Some(0.0), ..*options };
+        Ok(Self { zip: done, ..Self::of(&meshes.collect::<Vec<_>>(), &options, progress)? })
     }
 }
 
@@ -99,7 +109,7 @@ mod tests {
 
     fn ahead(operands: &[&TriMesh], method: Method) -> Ahead {
         let options = Options { method, ..Options::new(VoxelSize::Along(32)) };
-        Ahead::of(operands, &options).expect("a look")
+        Ahead::of(operands, &options, &Progress::none()).expect("a look")
     }
 
     #[test]

@@ -20,6 +20,7 @@ mod error;
 mod exact;
 mod exact_plan;
 mod field;
+mod foresight;
 mod frame;
 mod holes;
 mod hollow;
@@ -66,6 +67,7 @@ pub use field::{
     Built, FieldBand, FieldBuilder, FieldError, FieldOperand, FieldReport, OperandReport, field_grid, field_spacing,
     field_surface, field_values,
 };
+pub use foresight::{Foresight, foresee};
 pub use holes::{NotOpened, Opened, holes};
 pub use hollow::{Drain, HollowError, HollowOptions, hollow, plan_hollow};
 pub use morphology::{MorphologyOptions, morphology, plan_morphology};
@@ -83,7 +85,7 @@ pub use sizing::{LatticeError, MAX_RESOLUTION};
 pub use source::TriangleSource;
 pub use textures::{carry_texture, carry_texture_to_simpler, classes_of};
 pub use thicken::{SheetSide, ThickenError, ThickenOptions, plan_thicken, thicken};
-pub use thickness::{LengthsReport, ThicknessError, ThicknessReport, thickness};
+pub use thickness::{LengthsReport, PERCENTILES, ThicknessError, ThicknessReport, thickness};
 pub use work::Work;
 
 use outcome::Draft;

@@ -11,6 +11,7 @@ use super::{BooleanError, LimitError, Method, Operand, Options, SurfaceOptions, 
 use crate::lattice::Lattice;
 use crate::ldi::{MAX_CROSSINGS, MAX_TRIANGLES};
 use crate::mesh::{Bounds, TriMesh};
+use crate::progress::Progress;
 
 /// What a run would cost, before it is run.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -84,7 +85,6 @@ const TRIANGLES_PER_CELL: f64 = 2.2;
 const TRIANGLES_PER_LID_CELL: f64 = 1.0;
 const TRIANGLES_PER_FLAT_CELL: f64 = 0.2;
 const TRIANGLES_PER_CONTACT: f64 = 3.0;
-
 /// How many times the seconds an offset adds.
 const OFFSET_SECONDS: f64 = 5.0;
 
@@ -121,8 +121,13 @@ pub fn plan<'a>(operands: impl IntoIterator<Item: Into<Operand<'a>>>, options: &
     let meshes: Vec<&TriMesh> = local.iter().map(AsRef::as_ref).collect();
     let bounds = sizing::bounds(meshes.iter().copied()).map_err(|operand| BooleanError::Empty { operand })?;
     let h = sizing::spacing(&bounds, options.voxel)?;
-    let Ahead { rest, touching, way } = Ahead::of(&meshes, options)?;
-    let given = Input::of(&meshes).triangles;
+    seen(&meshes, &Ahead::of(&meshes, options, &Progress::none())?, options, h)
+}
+
+/// What a run over operands near the origin would cost, once they have been looked at.
+pub(super) fn seen(meshes: &[&TriMesh], ahead: &Ahead, options: &Options, h: f64) -> Result<Plan, BooleanError> {
+    let &Ahead { ref rest, ref way, touching, .. } = ahead;
+    let given = Input::of(meshes).triangles;
     match way {
         Way::Exact => return Ok(Plan::of_exact(h, given, touching)),
         Way::Sealed(open) => {
@@ -135,7 +140,7 @@ pub fn plan<'a>(operands: impl IntoIterator<Item: Into<Operand<'a>>>, options: &
     let standing = given.saturating_sub(rest.triangles.len());
     let Some(bounds) = rest.bounds() else { return Ok(Plan::of_standing(h, standing)) };
     let lattice = sizing::lattice(&bounds, VoxelSize::Length(h))?;
-    let input = Input { touching, ..Input::surveyed(&[&rest]) };
+    let input = Input { touching, ..Input::surveyed(&[rest]) };
     let plan = input.cost(&lattice, &options.surface(), Offsets::default());
     let standing_memory = (STANDING_BYTES * standing as f64) as u64;
     let memory = plan.memory + standing_memory;

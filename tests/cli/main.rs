@@ -18,6 +18,8 @@ mod fields;
 mod files;
 #[cfg(feature = "gpu")]
 mod gpu;
+#[cfg(unix)]
+mod lead;
 mod maps;
 mod page;
 mod pictures;

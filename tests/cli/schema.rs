@@ -174,6 +174,8 @@ fn every_verb_reports_what_the_schema_says() {
             "field",
         ),
         ("inspect testdata/torus.ply --thickness --resolution 24", "inspection"),
+        ("inspect testdata/broken_mug.obj --resolution 24", "inspection"),
+        ("inspect testdata/open_cube.off --holes", "inspection"),
         ("inspect testdata/open_cube.off", "inspection"),
         ("inspect OUT/torus.nrrd", "lattice"),
         ("compare testdata/torus.ply testdata/open_cube.off --samples 500 --map OUT/m.ply", "comparison"),

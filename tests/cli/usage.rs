@@ -33,7 +33,25 @@ fn wrong_usage_exits_with_2_and_a_sentence() {
     let folder = folder();
     for (arguments, words) in [
         ("", "Usage"),
-        ("mend x.stl", "mend"),
+        ("mend x.stl", "`mend` is no verb"),
+        ("reapir testdata/torus.ply -o OUT/a.stl", "did you mean `repair`?"),
+        ("batch reapir testdata --out OUT/none", "did you mean `repair`?"),
+        ("inspect testdata/torus.ply --keep-partial", "it is a flag of `repair`"),
+        ("repair testdata/torus.ply -o OUT/a.stl --resoluton 64", "--resolution"),
+        ("repair testdata/torus.ply -o OUT/a.stl --preset prnit", "print"),
+        ("repair testdata/torus.ply -o OUT/a.stl --voxel 0.4mn", "did you mean 0.4mm?"),
+        ("repair testdata/torus.ply -o OUT/a.stl --unit milimetre", "did you mean millimeter?"),
+        ("repair testdata/torus.ply -o OUT/a.sltt", "did you mean OUT/a.stl?"),
+        ("sdf testdata/torus.ply -o OUT/a.vtii", "did you mean OUT/a.vti?"),
+        ("split testdata/torus.ply -o OUT/a.objj", "did you mean OUT/a.obj?"),
+        ("convert testdata/torus.ply -o OUT/a.glft", "did you mean OUT/a.gltf?"),
+        ("field a a=testdata/torus.ply -o OUT/a.nrdd", "did you mean OUT/a.nrrd?"),
+        ("repair testdata/torus.ply -o OUT/a.stl --out-format sltt", "did you mean stl?"),
+        ("render testdata/torus.ply -o OUT/a.png --view fornt", "did you mean front?"),
+        ("csg blok block=testdata/torus.ply -o OUT/a.stl", "did you mean `block`?"),
+        ("field ofset(a,1) a=testdata/torus.ply -o OUT/a.stl", "did you mean `offset`?"),
+        ("field filter(a,widht=1) a=testdata/torus.ply -o OUT/a.stl", "did you mean `width`?"),
+        ("field offset(a,1mn) a=testdata/torus.ply -o OUT/a.stl --unit mm", "did you mean 1mm?"),
         ("repair testdata/torus.ply", "--output"),
         ("repair testdata/torus.ply -o OUT/a.stl --resolution 64 --voxel 1", "cannot be used with"),
         ("repair testdata/torus.ply -o OUT/a.stl --resolution 1", "--resolution"),
@@ -88,6 +106,26 @@ fn wrong_usage_exits_with_2_and_a_sentence() {
     ] {
         let words = words.replace("OUT", folder.path().to_str().unwrap());
         run_in(&folder, arguments).exits(2).says(&[&words]);
+        assert_empty(&folder);
+    }
+}
+
+#[test]
+fn nothing_is_suggested_where_nothing_is_near() {
+    let folder = folder();
+    for arguments in [
+        "mend x.stl",
+        "repair testdata/torus.ply -o OUT/a.stl --colour",
+        "repair testdata/torus.ply -o OUT/a.stl --preset wood",
+        "repair testdata/torus.ply -o OUT/a.stl --voxel 3parsec",
+        "repair testdata/torus.ply -o OUT/a.step",
+        "repair testdata/torus.ply -o OUT/a.stl --out-format step",
+        "render testdata/torus.ply -o OUT/a.png --view inside",
+        "csg wheel a=testdata/torus.ply -o OUT/a.stl",
+        "field explode(a) a=testdata/torus.ply -o OUT/a.stl",
+    ] {
+        let said = run_in(&folder, arguments).exits(2).stderr;
+        assert!(!said.contains("did you mean") && !said.contains("similar"), "{arguments}: {said}");
         assert_empty(&folder);
     }
 }

@@ -6,7 +6,7 @@ use std::ffi::OsString;
 use clap::{Args, Command, FromArgMatches};
 
 use super::super::exit::Failure;
-use super::super::{args, words};
+use super::super::{args, meant, words};
 use super::args::EachArgs;
 use super::job::Job;
 use super::options::{Whose, name, pieces};
@@ -30,7 +30,11 @@ pub fn verb_of(word: &str, program: &Command) -> Result<&'static BatchVerb, Fail
             Some(name) => Failure::usage(format!("`{name}` cannot be run in a batch")),
             None => Failure::usage(format!("`{word}` is no verb")),
         };
-        failure.hint(format!("{} can be", words::list(&verbs::of_one_input())))
+        let can_be = format!("{} can be", words::list(&verbs::of_one_input()));
+        failure.hint(match meant::verb(word, program).filter(|verb| verbs::of_name(verb).is_some()) {
+            Some(verb) => format!("did you mean `{verb}`? {can_be}"),
+            None => can_be,
+        })
     })
 }
 

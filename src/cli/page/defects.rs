@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::cli::holes;
-use crate::cli::words::{self, UnitName};
+use crate::cli::words::{self, UnitName, around};
 use crate::mesh::Bounds;
 use crate::page::{Cluster, DefectKind, Place, Row, Table};
 use crate::pipeline::{HoleReport, Report};
@@ -187,10 +187,4 @@ fn capital(name: &str) -> String {
         first.make_ascii_uppercase();
     }
     name
-}
-
-/// A place in words; what is beside the rest nothing is 0.
-fn around(at: DVec3) -> String {
-    let least = 1e-9 * at.abs().max_element();
-    at.to_array().map(|x| words::number(if x.abs() < least { 0.0 } else { x })).join(" ")
 }

@@ -6,11 +6,10 @@ use super::functions::{FUNCTIONS, by_name};
 use super::syntax::{Form, Raw, Raws};
 use super::table::{Axis, Kind, List, Parameter, Presence, Preset};
 use super::tree::{Argument, Call, Function, Node, NodeKind, Quantity, Span, Typed, check_range};
+use crate::nearest::nearest;
 
 type Result<T> = std::result::Result<T, LanguageError>;
 
-/// Names at this many typing errors from each other are near.
-const NEAR: usize = 2;
 /// Of a piece of text, an error shows so many characters.
 const SHOWN: usize = 24;
 
@@ -201,9 +200,8 @@ fn sort<'r, 'a>(function: &Function, arguments: &'r [(Option<&str>, Raw<'a>)]) -
         let number = match name {
             Some(name) => {
                 named = true;
-                function.parameters.iter().position(|parameter| parameter.name == *name).ok_or_else(|| {
-                    LanguageError::UnknownParameter { at, name: name.to_string(), signature: function.to_string() }
-                })?
+                let number = function.parameters.iter().position(|parameter| parameter.name == *name);
+                number.ok_or_else(|| unknown_parameter(function, name, at))?
             }
             None if named => return Err(LanguageError::Unnamed { at, signature: function.to_string() }),
             None if sorted.fields.len() < room => {
@@ -250,9 +248,12 @@ fn left_away(parameter: &Parameter, span: Span) -> Option<Typed> {
     Some(Typed { span, argument })
 }
 
+fn unknown_parameter(function: &Function, name: &str, at: usize) -> LanguageError {
+    let nearest = nearest(name, function.parameters.iter().map(|parameter| parameter.name));
+    LanguageError::UnknownParameter { at, name: name.into(), signature: function.to_string(), nearest }
+}
+
 fn unknown_function(name: &str, span: Span) -> LanguageError {
-    let distance = |candidate: &str| strsim::damerau_levenshtein(name, candidate);
-    let near = FUNCTIONS.iter().map(|function| (distance(function.name), function.name));
-    let nearest = near.filter(|(distance, _)| *distance <= NEAR).min_by_key(|(distance, _)| *distance);
-    LanguageError::UnknownFunction { at: span.start, name: name.into(), nearest: nearest.map(|(_, name)| name) }
+    let nearest = nearest(name, FUNCTIONS.iter().map(|function| function.name));
+    LanguageError::UnknownFunction { at: span.start, name: name.into(), nearest }
 }

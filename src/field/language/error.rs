@@ -1,5 +1,7 @@
 //! What is wrong with a text, and where.
 
+use crate::nearest::nearest;
+
 /// Why the text is no field over the given names. Positions are bytes from the start.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LanguageError {
@@ -71,6 +73,8 @@ pub enum LanguageError {
         name: String,
         /// How the function is called.
         signature: String,
+        /// Its parameter with the nearest name, if one is near.
+        nearest: Option<&'static str>,
     },
     /// A field or parameter that is not given and has no default.
     #[error("`{what}` of `{signature}` is missing")]
@@ -198,7 +202,10 @@ impl LanguageError {
             Self::UnknownName { name, known, function, .. } => Some(match function {
                 Some(function) => format!("`{name}` is a function: {}", function),
                 None if known.is_empty() => format!("give it one: {name}=FILE"),
-                None => format!("the names given are {}", known.join(", ")),
+                None => match nearest(name, known.iter().map(String::as_str)) {
+                    Some(near) => format!("did you mean `{near}`? the names given are {}", known.join(", ")),
+                    None => format!("the names given are {}", known.join(", ")),
+                },
             }),
             Self::UnusedNames { .. } => Some("use them, or leave their files away".into()),
             Self::ReservedName => Some("another name, in the expression too".into()),
@@ -206,6 +213,7 @@ impl LanguageError {
                 Some(nearest) => format!("did you mean `{nearest}`?"),
                 None => "--help lists all functions".into(),
             }),
+            Self::UnknownParameter { nearest: Some(nearest), .. } => Some(format!("did you mean `{nearest}`?")),
             Self::NotBoolean { function, .. } if function.starts_with("complement(") => {
                 Some("what is outside has no end: `a - b` is what is inside a and outside b".into())
             }

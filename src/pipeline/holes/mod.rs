@@ -126,6 +126,11 @@ impl Plan {
         Ok(plan)
     }
 
+    /// The rims, the longest first.
+    pub fn rims(&self) -> &[Rim] {
+        &self.rims
+    }
+
     /// Whether all rims have lids, but for those of sheets that are left out.
     pub fn is_whole(&self) -> bool {
         self.lids.iter().all(|lid| lid.is_ok() || self.is_out(lid))
