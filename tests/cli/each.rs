@@ -119,7 +119,7 @@ fn what_encloses_nothing_is_left_as_it_is_and_listed() {
     boxes(&folder, "in.obj", &[("box", open_box(0.0, 10.0)), ("flat", flat.clone())]);
     for format in ["obj", "3mf", "glb", "gltf"] {
         let line = format!("repair OUT/in.obj --each -o OUT/out.{format} --json");
-        let done = run_in(&folder, &line).exits(3).says(&["2 flat", "as it is: ", "1 object left as it was"]);
+        let done = run_in(&folder, &line).exits(3).says(&["2 flat", "as it is: ", "1 object left alone, not solid"]);
         let objects = &done.json()["result"]["objects"];
         assert_eq!((&objects[0]["done"], &objects[1]["done"]), (&"repaired".into(), &"left".into()));
         assert_eq!(objects[0]["after"]["open_edges"], 0);

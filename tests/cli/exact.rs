@@ -172,7 +172,7 @@ fn where_triangles_cross_is_measured_and_drawn() {
         assert!(json["result"]["crossings"].is_null(), "{name}");
     }
     let blue = |flags: &str| {
-        run_in(&folder, &format!("render {BOXES} -o OUT/a.png --width 300 --height 200 {flags}")).exits(0);
+        run_in(&folder, &format!("render {BOXES} -o OUT/a.png --width 300 --height 200 --plain {flags}")).exits(0);
         let file = std::fs::File::open(folder.path().join("a.png")).expect("a picture");
         let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a picture");
         let mut bytes = vec![0; reader.output_buffer_size().expect("it fits")];

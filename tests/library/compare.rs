@@ -150,7 +150,9 @@ fn the_map_is_negative_inside_and_reads_back() {
     let inside = map(&cube(0.75));
     assert!(inside.distances.iter().all(|d| (d + 0.25).abs() < 1e-12));
     assert!(inside.colours().iter().all(|c| c[2] > c[0]), "inside is blue");
-    assert_eq!(map(&cube(1.0)).colours(), [[255; 3]; 8]);
+    // Zero is a grey that is seen on a white page too.
+    let even = |c: &[u8; 3]| c.iter().max().zip(c.iter().min()).is_some_and(|(max, min)| max - min < 8 && *max < 230);
+    assert!(map(&cube(1.0)).colours().iter().all(even));
 
     let mesh = cube(1.5);
     let quality: Vec<f32> = outside.distances.iter().map(|&d| d as f32).collect();
