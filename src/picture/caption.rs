@@ -39,6 +39,8 @@ pub(super) struct Captions {
     above: f32,
     below: f32,
     right: f32,
+    /// Whether what colours mean is beside the axes and the scale; else below them, where there is more room for long words.
+    beside: bool,
 }
 
 /// The side of the axes' field, and the room for the scale beside it, in letters.
@@ -56,12 +58,16 @@ impl Captions {
         let pen = pen_for(size);
         let sizes = size.map(|k| k as f32);
         let titled = captions.iter().any(|caption| !caption.title.is_empty());
-        let mut all =
-            Self { pen, size: sizes, above: if titled { 1.9 * pen.size } else { 0.0 }, below: 0.0, right: 0.0 };
+        let above = if titled { 1.9 * pen.size } else { 0.0 };
+        let mut all = Self { pen, size: sizes, above, below: 0.0, right: 0.0, beside: true };
+        let longest = captions.iter().map(|caption| LegendLines::widest(&caption.legend, &pen)).fold(0.0, f32::max);
+        all.beside = longest <= all.legend_width();
         let lines = |caption: &Caption| LegendLines::new(&caption.legend, &pen, all.legend_width()).count() as f32;
         let lines = captions.iter().map(lines).fold(0.0, f32::max);
-        // At most a third of the picture is for words below it.
-        all.below = (AXES.max(LINE * lines) * pen.size + MARGIN * pen.size).min(sizes[1] / 3.0);
+        let letters = if all.beside { AXES.max(LINE * lines) } else { AXES + LINE * lines };
+        // No more than this part of the picture is for words below it.
+        let most = if all.beside { 1.0 / 3.0 } else { 0.55 };
+        all.below = ((letters + MARGIN) * pen.size).min(sizes[1] * most);
         let bar = |caption: &Caption| caption.scale.as_ref().map_or(0.0, |scale| bar_of(scale).width(&pen));
         all.right = captions.iter().map(bar).fold(0.0, f32::max);
         Some(all)
@@ -76,7 +82,8 @@ impl Captions {
 
     /// Where the legend begins.
     fn legend_left(&self) -> f32 {
-        (2.0 * MARGIN + AXES + SCALE) * self.pen.size
+        let before = if self.beside { MARGIN + AXES + SCALE } else { 0.0 };
+        (MARGIN + before) * self.pen.size
     }
 
     fn legend_width(&self) -> f32 {
@@ -95,8 +102,12 @@ impl Captions {
         draw_axes(image, &pen, [margin + AXES / 2.0 * pen.size, top + AXES / 2.0 * pen.size], camera);
         self.draw_scale(image, caption, camera, [margin + (AXES + 0.6) * pen.size, top + AXES / 2.0 * pen.size]);
         let legend = LegendLines::new(&caption.legend, &pen, self.legend_width());
-        let free = (self.below - margin - legend.count() as f32 * LINE * pen.size).max(0.0);
-        legend.draw(image, &pen, [self.legend_left(), top + free / 2.0], self.legend_width());
+        let first = if self.beside {
+            (self.below - margin - legend.count() as f32 * LINE * pen.size).max(0.0) / 2.0
+        } else {
+            AXES * pen.size
+        };
+        legend.draw(image, &pen, [self.legend_left(), top + first], self.legend_width());
         if let Some(scale) = &caption.scale {
             let frame = self.frame();
             let down = [frame.corner.y as f32 + margin, top - margin];
@@ -178,5 +189,30 @@ fn bar_of(scale: &ColourScale) -> Bar<'_> {
         histogram: &scale.histogram,
         title: &scale.title,
         lines: false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_words_get_the_whole_width_of_a_small_picture() {
+        let entry = |text: &str| LegendEntry { colour: [9; 3], text: text.into() };
+        let caption = Caption { legend: vec![entry("made up: no surface of the input there")], ..Caption::default() };
+        let short = Caption { legend: vec![entry("inner sides")], ..Caption::default() };
+        for (captions, size, beside) in [
+            (vec![caption.clone()], [300, 240], false),
+            (vec![caption.clone()], [1200, 900], true),
+            (vec![short.clone()], [300, 240], true),
+            // Pictures beside each other have their words at the same places.
+            (vec![short, caption], [300, 240], false),
+        ] {
+            let lay = Captions::new(&captions, size).expect("there is room");
+            assert_eq!(lay.beside, beside, "{size:?}");
+            let longest = captions.iter().map(|c| LegendLines::widest(&c.legend, &lay.pen)).fold(0.0, f32::max);
+            assert!(longest <= lay.legend_width() && lay.legend_left() + lay.legend_width() < size[0] as f32);
+            assert!(lay.frame().size.y > 0.5 * f64::from(size[1]));
+        }
     }
 }

@@ -60,7 +60,7 @@ impl<'a> LegendLines<'a> {
         let (mut line, mut at) = (0, 0.0);
         let mut placed = Vec::new();
         for entry in entries {
-            let wide = (PATCH + AFTER_PATCH) * pen.size + pen.width(&entry.text);
+            let wide = Self::wide(entry, pen);
             if at > 0.0 && at + wide > width {
                 (line, at) = (line + 1, 0.0);
             }
@@ -68,6 +68,15 @@ impl<'a> LegendLines<'a> {
             at += wide + AFTER_ENTRY * pen.size;
         }
         Self { entries: placed }
+    }
+
+    /// The width of the widest entry.
+    pub(super) fn widest(entries: &[LegendEntry], pen: &Pen) -> f32 {
+        entries.iter().map(|entry| Self::wide(entry, pen)).fold(0.0, f32::max)
+    }
+
+    fn wide(entry: &LegendEntry, pen: &Pen) -> f32 {
+        (PATCH + AFTER_PATCH) * pen.size + pen.width(&entry.text)
     }
 
     /// How many lines there are.
