@@ -25,7 +25,7 @@ LEFT_OUT = {
 }
 
 LENGTH = ("LEN", "LEN|off", "LEN|full", "VOLUME", "LEN|PLANE", "AXIS[=AT]")
-NUMBERS = {"N": "int", "PIXELS": "int", "DEG": "float", "R": "float", "LIMIT": "float", "SIZE": "str | int", "DUR": "str | float"}
+NUMBERS = {"N": "int", "PIXELS": "int", "DEG": "float", "R": "float", "SHARE": "str | float", "LIMIT": "float", "SIZE": "str | int", "DUR": "str | float"}
 LISTS = {"all|N,N": "str | Sequence[int]", "D@X,Y,Z": "str | Sequence[str]", "X,Y,Z": "str | Sequence[float]"}
 LISTS |= {"FROM,TO": "str | Sequence[int]", "LOW,HIGH": "str | Sequence[float]", "DEFECT": "str | Sequence[str]", "F|X,Y,Z": "str | float | Sequence[float]"}
 

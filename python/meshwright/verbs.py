@@ -1035,12 +1035,12 @@ def inspect(
     thickness: bool = False,
     holes: bool = False,
     fill: Literal["auto", "flat", "smooth", "none"] | None = None,
+    voxel: Length | None = None,
     fail_on: str | Sequence[str] | None = None,
     in_format: str | None = None,
     unit: str | None = None,
     timeout: str | float | None = None,
     resolution: int | None = None,
-    voxel: Length | None = None,
     threads: int | None = None,
     progress: Progress = False,
 ) -> dict[str, Any]:
@@ -1052,12 +1052,12 @@ def inspect(
     - ``thickness``: Also measure the thickness of walls and gaps along the rays of a lattice.
     - ``holes``: Also list the holes, with what ``repair`` would do over each.
     - ``fill``: How the holes would be closed (default: auto).
+    - ``voxel``: Size of a voxel, instead of resolution.
     - ``fail_on``: Exit with 3 when the mesh has one of these defects.
     - ``in_format``: Format of the input, when neither its content nor its name should decide.
     - ``unit``: Unit of the numbers in files that carry none (STL, OBJ, PLY, OFF).
     - ``timeout``: Give up after this time (30s, 5m).
     - ``resolution``: Voxels along the longest side of the bounding box, of thickness and of the repair that is foretold (default: 256).
-    - ``voxel``: Size of a voxel, instead of resolution.
     - ``threads``: Threads to use; without it those that all calls share, one for each core.
     - ``progress``: ``True`` for a bar, or a function that is told the stage and its share, 0 to 1.
 
@@ -1066,7 +1066,7 @@ def inspect(
     >>> report["inputs"][0]["validity"]["open_edges"] > 0
     True
     """
-    options: dict[str, Any] = {"overhang": overhang, "thickness": thickness, "holes": holes, "fill": fill, "fail_on": fail_on, "in_format": in_format, "unit": unit, "timeout": timeout, "resolution": resolution, "voxel": voxel}
+    options: dict[str, Any] = {"overhang": overhang, "thickness": thickness, "holes": holes, "fill": fill, "voxel": voxel, "fail_on": fail_on, "in_format": in_format, "unit": unit, "timeout": timeout, "resolution": resolution}
     _, report = call("inspect", [mesh], options, result=None, threads=threads, progress=progress)
     return report
 
@@ -1076,6 +1076,7 @@ def compare(
     b: MeshLike,
     *,
     map: str | None = None,
+    map_range: Length | None = None,
     samples: int | None = None,
     tolerance: Length | None = None,
     fail_on_max: Length | None = None,
@@ -1090,6 +1091,7 @@ def compare(
     Keywords, as on the command line:
 
     - ``map``: Write B, coloured by its signed distance from A, to this file.
+    - ``map_range``: The distance that has the full colour in the map [default: what 99 of 100 vertices do not exceed].
     - ``samples``: Points on each mesh at which distances are taken, besides all vertices (default: 100000).
     - ``tolerance``: How near a sharp edge of the other mesh must be to count as found [default: 1/1024 of A's longest side].
     - ``fail_on_max``: Exit with 3 when a point of one mesh is farther than this from the other.
@@ -1103,7 +1105,7 @@ def compare(
     >>> mw.compare("testdata/hollow_ball.stl", "testdata/hollow_ball.stl")["symmetric"]["max"]
     0.0
     """
-    options: dict[str, Any] = {"map": map, "samples": samples, "tolerance": tolerance, "fail_on_max": fail_on_max, "in_format": in_format, "unit": unit, "timeout": timeout}
+    options: dict[str, Any] = {"map": map, "map_range": map_range, "samples": samples, "tolerance": tolerance, "fail_on_max": fail_on_max, "in_format": in_format, "unit": unit, "timeout": timeout}
     _, report = call("compare", [a, b], options, result=None, threads=threads, progress=progress)
     return cast("dict[str, Any]", report["result"]["comparison"])
 
@@ -1115,10 +1117,20 @@ def render(
     width: int | None = None,
     height: int | None = None,
     view: str | None = None,
+    views: str | Sequence[str] | None = None,
+    projection: Literal["orthographic", "perspective"] | None = None,
     y_up: bool = False,
     slice: Length | None = None,
+    clip: Length | None = None,
+    opacity: str | float | None = None,
+    zoom: Literal["defects"] | None = None,
+    regions: str | None = None,
+    turntable: int | None = None,
     edges: Literal["none", "sharp", "all"] | None = None,
     no_defects: bool = False,
+    background: Literal["gradient", "white", "transparent"] | None = None,
+    title: str | Sequence[str] | None = None,
+    plain: bool = False,
     max_memory: str | int | None = None,
     in_format: str | None = None,
     unit: str | None = None,
@@ -1130,14 +1142,24 @@ def render(
 
     Keywords, as on the command line:
 
-    - ``width``: Width of the picture (of each, for two), pixels (default: 1200).
+    - ``width``: Width of the picture (of each, for several), pixels (default: 1200).
     - ``height``: Height, pixels (default: 900).
     - ``view``: From where: iso, front, back, left, right, top, bottom, or the direction to the viewer as X,Y,Z (default: iso).
-    - ``y_up``: The y axis points up, not z.
+    - ``views``: Several views on one sheet, in one scale: iso,front,top,right.
+    - ``projection``: How depth shows (default: orthographic).
+    - ``y_up``: The y axis points up, not z; in slices, too.
     - ``slice``: Draw a slice: z (through the middle), x=50%, y=1.5 or z=2mm; of meshes, where no grid is given, through their signed distance
       [default: z, for grids].
+    - ``clip``: Cut away what is in front of a plane: z=50%, x=1.5 or y=2mm; the inside of closed meshes is hatched.
+    - ``opacity``: How much a surface hides of what is behind it: 0.3, or 30% (default: 1).
+    - ``zoom``: Fill the picture with this: the largest group of defects.
+    - ``regions``: Draw the thin and doubtful regions that the report of a run tells of.
+    - ``turntable``: Turn the mesh once, in so many pictures, as an animated PNG.
     - ``edges``: Which edges of triangles are drawn (default: sharp).
     - ``no_defects``: Do not colour defects.
+    - ``background``: What is behind the mesh (default: gradient).
+    - ``title``: The words above the picture; once for each, for several [default: the names of the files].
+    - ``plain``: No title, axes, scale and legend: the mesh alone.
     - ``max_memory``: Refuse grids that would take more memory (500M, 2G).
     - ``in_format``: Format of the input, when neither its content nor its name should decide.
     - ``unit``: Unit of the numbers in files that carry none (STL, OBJ, PLY, OFF).
@@ -1149,6 +1171,6 @@ def render(
     >>> mw.render("testdata/broken_mug.obj", width=64, height=48).shape
     (48, 64, 4)
     """
-    options: dict[str, Any] = {"width": width, "height": height, "view": view, "y_up": y_up, "slice": slice, "edges": edges, "no_defects": no_defects, "max_memory": max_memory, "in_format": in_format, "unit": unit, "timeout": timeout}
+    options: dict[str, Any] = {"width": width, "height": height, "view": view, "views": views, "projection": projection, "y_up": y_up, "slice": slice, "clip": clip, "opacity": opacity, "zoom": zoom, "regions": regions, "turntable": turntable, "edges": edges, "no_defects": no_defects, "background": background, "title": title, "plain": plain, "max_memory": max_memory, "in_format": in_format, "unit": unit, "timeout": timeout}
     made, _ = call("render", [mesh] if after is None else [mesh, after], options, result="png", threads=threads, progress=progress)
     return cast("NDArray[np.uint8]", made[0])
