@@ -195,7 +195,7 @@ def check_theirs(program, folder, values, origin, spacing, band):
 
     def picture(path):
         out = folder / "slice.png"
-        place = ["--slice", "z=50%", "--width", "240", "--height", "200"]
+        place = ["--slice", "z=50%", "--plain", "--width", "240", "--height", "200"]
         command = [program, "render", path, "-o", out, "-q", "--json", *place]
         report = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
         ranges[path.name] = report["result"]["slices"][0]["range"]

@@ -33,6 +33,17 @@ def test_usage() -> None:
         mw.repair(cube(), resolutoin=64)  # type: ignore[call-arg]
 
 
+def test_a_wheel_without_graphics_says_what_it_lacks() -> None:
+    try:
+        mw.repair(cube(), backend="gpu")
+    except mw.DeviceError:
+        pytest.skip("this one has the feature `gpu`")
+    except mw.UsageError:
+        assert "feature `gpu`" in failing(mw.UsageError, mw.repair, cube(), backend="gpu").message
+    else:
+        pytest.skip("this one has the feature `gpu`")
+
+
 def test_input(tmp_path) -> None:
     failing(mw.InputError, mw.repair, tmp_path / "nothing.stl")
     (tmp_path / "bad.stl").write_bytes(b"solid nothing of the sort")
