@@ -22,6 +22,8 @@ LEFT_OUT = {
     "convert:in-format",
     # Its result is a file of objects, not a mesh.
     "repair:each",
+    # An animation is a file; views are turned one by one.
+    "render:turntable",
 }
 
 LENGTH = ("LEN", "LEN|off", "LEN|full", "VOLUME", "LEN|PLANE", "AXIS[=AT]")

@@ -1125,7 +1125,6 @@ def render(
     opacity: str | float | None = None,
     zoom: Literal["defects"] | None = None,
     regions: str | None = None,
-    turntable: int | None = None,
     edges: Literal["none", "sharp", "all"] | None = None,
     no_defects: bool = False,
     background: Literal["gradient", "white", "transparent"] | None = None,
@@ -1154,7 +1153,6 @@ def render(
     - ``opacity``: How much a surface hides of what is behind it: 0.3, or 30% (default: 1).
     - ``zoom``: Fill the picture with this: the largest group of defects.
     - ``regions``: Draw the thin and doubtful regions that the report of a run tells of.
-    - ``turntable``: Turn the mesh once, in so many pictures, as an animated PNG.
     - ``edges``: Which edges of triangles are drawn (default: sharp).
     - ``no_defects``: Do not colour defects.
     - ``background``: What is behind the mesh (default: gradient).
@@ -1171,6 +1169,6 @@ def render(
     >>> mw.render("testdata/broken_mug.obj", width=64, height=48).shape
     (48, 64, 4)
     """
-    options: dict[str, Any] = {"width": width, "height": height, "view": view, "views": views, "projection": projection, "y_up": y_up, "slice": slice, "clip": clip, "opacity": opacity, "zoom": zoom, "regions": regions, "turntable": turntable, "edges": edges, "no_defects": no_defects, "background": background, "title": title, "plain": plain, "max_memory": max_memory, "in_format": in_format, "unit": unit, "timeout": timeout}
+    options: dict[str, Any] = {"width": width, "height": height, "view": view, "views": views, "projection": projection, "y_up": y_up, "slice": slice, "clip": clip, "opacity": opacity, "zoom": zoom, "regions": regions, "edges": edges, "no_defects": no_defects, "background": background, "title": title, "plain": plain, "max_memory": max_memory, "in_format": in_format, "unit": unit, "timeout": timeout}
     made, _ = call("render", [mesh] if after is None else [mesh, after], options, result="png", threads=threads, progress=progress)
     return cast("NDArray[np.uint8]", made[0])

@@ -46,6 +46,19 @@ pub fn explain(error: &clap::Error, arguments: &[OsString]) -> Option<Failure> {
     }
 }
 
+/// What the parser says, as one failure.
+pub fn in_words(error: &clap::Error) -> Failure {
+    let text = error.to_string();
+    let (said, rest) = text.split_once("\n\n").unwrap_or((&text, ""));
+    let said = said.strip_prefix("error: ").unwrap_or(said).trim();
+    let tip = rest.lines().find_map(|line| line.trim().strip_prefix("tip: "));
+    let failure = Failure::usage(said.split_whitespace().collect::<Vec<_>>().join(" "));
+    match tip {
+        Some(tip) => failure.hint(tip),
+        None => failure,
+    }
+}
+
 fn unknown_verb(word: &str, program: &Command) -> Failure {
     Failure::usage(format!("`{word}` is no verb")).hint(match meant::verb(word, program) {
         Some(verb) => format!("did you mean `{verb}`?"),
@@ -216,6 +229,16 @@ mod tests {
         ] {
             assert_eq!(explained(line), "", "{line}");
         }
+    }
+
+    #[test]
+    fn what_the_parser_lists_is_in_its_sentence() {
+        let line = ["meshwright", "compare", "a.stl", "b.stl", "--map-range", "2"];
+        let failure = in_words(&Cli::try_parse_from(line).expect_err("there is no map"));
+        assert!(failure.message.ends_with("not provided: --map <FILE.ply>"), "{}", failure.message);
+        let failure =
+            in_words(&Cli::try_parse_from(["meshwright", "repair", "a.stl", "--resoluton", "7"]).expect_err("no"));
+        assert!(failure.hint.is_some_and(|hint| hint.contains("--resolution")));
     }
 
     #[test]

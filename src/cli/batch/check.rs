@@ -6,7 +6,7 @@ use std::ffi::OsString;
 use clap::{Args, Command, FromArgMatches};
 
 use super::super::exit::Failure;
-use super::super::{args, meant, words};
+use super::super::{args, meant, misuse, words};
 use super::args::EachArgs;
 use super::job::Job;
 use super::options::{Whose, name, pieces};
@@ -56,7 +56,7 @@ pub fn settle(options: &[OsString], verb: &BatchVerb, program: &Command) -> Resu
         }
     }
     let parsed = each.try_get_matches_from(own).and_then(|matches| EachArgs::from_arg_matches(&matches));
-    Ok((parsed.map_err(|error| in_words(&error))?, others))
+    Ok((parsed.map_err(|error| misuse::in_words(&error))?, others))
 }
 
 /// The options of `given` that are not among `others`.
@@ -95,19 +95,6 @@ fn check(job: &Job) -> Result<(), Failure> {
         return Err(Failure::usage(format!("`{}` cannot write {}", verb.name, format.name())));
     }
     let program = std::iter::once("meshwright".into());
-    let mut cli = args::parse(program.chain(job.arguments(1))).map_err(|error| in_words(&error))?;
+    let mut cli = args::parse(program.chain(job.arguments(1))).map_err(|error| misuse::in_words(&error))?;
     args::solid(&mut cli.verb).map_or(Ok(()), |args| args.check())
-}
-
-/// What the parser says, as one failure.
-fn in_words(error: &clap::Error) -> Failure {
-    let text = error.to_string();
-    let (said, rest) = text.split_once("\n\n").unwrap_or((&text, ""));
-    let said = said.strip_prefix("error: ").unwrap_or(said).trim();
-    let tip = rest.lines().find_map(|line| line.trim().strip_prefix("tip: "));
-    let failure = Failure::usage(said.split_whitespace().collect::<Vec<_>>().join(" "));
-    match tip {
-        Some(tip) => failure.hint(tip),
-        None => failure,
-    }
 }

@@ -94,17 +94,7 @@ pub fn call(call: Call) -> Result<Answer, Box<Refusal>> {
 }
 
 fn misunderstood(error: &clap::Error, arguments: &[OsString]) -> Failure {
-    misuse::explain(error, arguments).unwrap_or_else(|| {
-        let text = error.render().to_string();
-        let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
-        let first = lines.next().unwrap_or("the arguments are not understood");
-        let hint = lines.find_map(|line| line.strip_prefix("tip: "));
-        let failure = Failure::usage(first.strip_prefix("error: ").unwrap_or(first));
-        match hint {
-            Some(hint) => failure.hint(hint),
-            None => failure,
-        }
-    })
+    misuse::explain(error, arguments).unwrap_or_else(|| misuse::in_words(error))
 }
 
 /// Runs one verb for the owner of a desk, and lays the answer there.
