@@ -255,7 +255,7 @@ pub fn draw(
     };
     let name = unit.map(|unit| unit.to_string());
     let caption = |(n, field): (usize, &Field<'_>)| {
-        let file = Path::new(field.label).file_name().map_or(field.label.into(), |name| name.to_string_lossy());
+        let file = words::file_name(field.label);
         let place = words::length(at, name.as_deref());
         let own = format!("{file}, {} = {place}", choice.axis.name());
         let title = how.titles.get(n).cloned().unwrap_or(own);

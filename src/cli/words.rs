@@ -1,9 +1,14 @@
-//! Numbers and quantities in words.
+//! Numbers, quantities and names in words.
 
 use glam::DVec3;
 
 pub(crate) use crate::digits::{count, factor, number, rounded_down, rounded_up};
 use crate::io::Unit;
+
+/// The name of a file without its folders.
+pub fn file_name(path: &str) -> &str {
+    std::path::Path::new(path).file_name().and_then(|name| name.to_str()).unwrap_or(path)
+}
 
 /// The name of the model's unit, where it has one.
 pub type UnitName<'a> = Option<&'a str>;

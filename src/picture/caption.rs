@@ -6,7 +6,7 @@ use super::bar::{Bar, round_step};
 use super::camera::{Camera, Frame};
 use super::image::Image;
 use super::legend::{LINE, LegendLines};
-use super::text::{Anchor, Pen};
+use super::text::{Anchor, MARGIN, Pen};
 use crate::digits::number;
 use crate::io::{ColourScale, LegendEntry};
 
@@ -46,8 +46,6 @@ pub(super) struct Captions {
 /// The side of the axes' field, and the room for the scale beside it, in letters.
 const AXES: f32 = 3.6;
 const SCALE: f32 = 9.0;
-/// What is free at the sides.
-const MARGIN: f32 = 0.7;
 
 impl Captions {
     /// Room for the largest of all; `None` where there is none, or no captions.
@@ -95,9 +93,7 @@ impl Captions {
         let pen = self.pen;
         let [width, height] = self.size;
         let margin = MARGIN * pen.size;
-        let title = Pen { size: 1.15 * pen.size, ..pen };
-        let text = title.shortened(&caption.title, width - 2.0 * margin);
-        title.draw(image, &text, [margin, 0.55 * self.above], Anchor::Left);
+        pen.draw_title(image, &caption.title, self.above);
         let top = height - self.below;
         draw_axes(image, &pen, [margin + AXES / 2.0 * pen.size, top + AXES / 2.0 * pen.size], camera);
         self.draw_scale(image, caption, camera, [margin + (AXES + 0.6) * pen.size, top + AXES / 2.0 * pen.size]);

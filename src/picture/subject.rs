@@ -7,7 +7,7 @@ use super::line::{DrawnEdge, Style};
 use super::options::Painted;
 use super::specks::without_specks;
 use crate::arrange::{ArrangeError, crossing_curves};
-use crate::mesh::edges::{Edge, Edges, copies};
+use crate::mesh::edges::{Edges, copies};
 use crate::mesh::weld::welded_triangles;
 use crate::mesh::{Bounds, MassProperties, TriMesh, intersecting_triangles};
 use crate::progress::{Progress, Stopped};
@@ -164,36 +164,34 @@ fn styled_edges(triangles: &[[u32; 3]], vertices: usize, flat: &[Vec3], found: &
     edges.each(|edge| {
         let halves: Vec<u32> = edge.halves().take(3).collect();
         let sides = [halves[0], *halves.last().unwrap_or(&halves[0])].map(|half| half / 3);
-        let style = match edge.count() {
-            1 => {
+        let style = match halves.as_slice() {
+            [_] => {
                 found.open_edges += 1;
                 Style::Open
             }
-            3.. => {
+            &[a, b] => {
+                let agree = edges.runs_up(a) != edges.runs_up(b);
+                found.shows_inside |= !agree;
+                match sharpness(sides.map(|t| flat[t as usize]), agree) {
+                    sharp if sharp > 0.0 => Style::Sharp { strength: sharp },
+                    _ => Style::Plain { strength: 1.0 },
+                }
+            }
+            _ => {
                 found.crowded_edges += 1;
                 Style::Crowded
             }
-            _ => match sharpness(&edges, &edge, flat) {
-                sharp if sharp > 0.0 => Style::Sharp { strength: sharp },
-                _ => Style::Plain { strength: 1.0 },
-            },
         };
-        if let &[a, b] = halves.as_slice() {
-            found.shows_inside |= edges.runs_up(a) == edges.runs_up(b);
-        }
         drawn.push(DrawnEdge { ends: edge.ends, style, triangles: sides });
     });
     found.shows_inside |= found.open_edges + found.crowded_edges > 0;
     drawn
 }
 
-/// How much of a sharp edge is drawn: nothing at 30 degrees, all of it from 60 degrees on.
-fn sharpness(edges: &Edges<'_>, edge: &Edge<'_>, flat: &[Vec3]) -> f32 {
-    let halves: Vec<u32> = edge.halves().take(3).collect();
-    let &[a, b] = halves.as_slice() else { return 1.0 };
-    let cosine = flat[a as usize / 3].dot(flat[b as usize / 3]);
-    // Triangles that run along the edge the same way face opposite ways.
-    let cosine = if edges.runs_up(a) == edges.runs_up(b) { -cosine } else { cosine };
+/// How much of a sharp edge between triangles of these normals is drawn: nothing at 30 degrees, all of it from 60 degrees on. Those that do not `agree`, because they run
+/// along the edge the same way, face opposite ways.
+fn sharpness([a, b]: [Vec3; 2], agree: bool) -> f32 {
+    let cosine = if agree { a.dot(b) } else { -a.dot(b) };
     ((CREASE - cosine) / (CREASE - 0.5)).clamp(0.0, 1.0)
 }
 

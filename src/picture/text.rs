@@ -9,6 +9,9 @@ const FONT: &[u8] = include_bytes!("font/Roboto-Regular.ttf");
 /// Almost black.
 pub(super) const INK: [u8; 3] = [30, 32, 38];
 
+/// What is free beside words at the sides of a picture, in letters.
+pub(super) const MARGIN: f32 = 0.7;
+
 /// Which place of the text a position is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Anchor {
@@ -72,6 +75,14 @@ impl Pen {
                 }
             });
         }
+    }
+
+    /// Draws the title of a picture in the room above it, a little larger than other words.
+    pub(super) fn draw_title(&self, image: &mut Image, text: &str, above: f32) {
+        let title = Self { size: 1.15 * self.size, ..*self };
+        let margin = MARGIN * self.size;
+        let text = title.shortened(text, image.width as f32 - 2.0 * margin);
+        title.draw(image, &text, [margin, 0.55 * above], Anchor::Left);
     }
 
     /// The letters beside each other from 0 on, and their width.

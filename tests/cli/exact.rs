@@ -6,7 +6,7 @@ use meshwright::mesh::TriMesh;
 use tempfile::TempDir;
 
 use super::common::shapes::cuboid;
-use super::{assert_empty, folder, run_in};
+use super::{assert_empty, folder, picture, run_in};
 
 /// Three boxes of 960, 360 and 256; the first overlaps the others by 120 and 128.
 const BOXES: &str = "testdata/overlapping_boxes.obj";
@@ -173,11 +173,8 @@ fn where_triangles_cross_is_measured_and_drawn() {
     }
     let blue = |flags: &str| {
         run_in(&folder, &format!("render {BOXES} -o OUT/a.png --width 300 --height 200 --plain {flags}")).exits(0);
-        let file = std::fs::File::open(folder.path().join("a.png")).expect("a picture");
-        let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a picture");
-        let mut bytes = vec![0; reader.output_buffer_size().expect("it fits")];
-        reader.next_frame(&mut bytes).expect("pixels");
-        bytes.chunks(4).filter(|pixel| pixel[2] > 150 && pixel[0] < 60 && pixel[1] < 90).count()
+        let (.., pixels) = picture(&folder, "a.png");
+        pixels.iter().filter(|pixel| pixel[2] > 150 && pixel[0] < 60 && pixel[1] < 90).count()
     };
     assert!(blue("") > 50 && blue("--no-defects") == 0, "{} {}", blue(""), blue("--no-defects"));
     run_in(&folder, &format!("render {BOXES} -o OUT/a.png")).exits(0).says(&["where they cross"]);

@@ -110,6 +110,16 @@ fn folder() -> TempDir {
     tempfile::tempdir().expect("a temporary folder")
 }
 
+/// Width, height, frames and the pixels of the first one, of a PNG picture.
+fn picture(folder: &TempDir, name: &str) -> (u32, u32, u32, Vec<[u8; 4]>) {
+    let file = std::fs::File::open(folder.path().join(name)).expect("a picture");
+    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a picture");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("it fits")];
+    let info = reader.next_frame(&mut bytes).expect("pixels");
+    let frames = reader.info().animation_control().map_or(1, |control| control.num_frames);
+    (info.width, info.height, frames, bytes.as_chunks::<4>().0.to_vec())
+}
+
 fn names_in(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder)
         .expect("the folder is there")

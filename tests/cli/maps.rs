@@ -3,7 +3,7 @@
 use glam::DVec3;
 use meshwright::io::{self, Colours};
 
-use super::{folder, run_in};
+use super::{folder, picture, run_in};
 
 /// The number of each face, from the header's layout: the last four bytes of each row.
 fn kinds(bytes: &[u8], faces: usize) -> Vec<u32> {
@@ -91,13 +91,6 @@ fn pictures_of_maps_have_a_legend() {
     let said = run_in(&folder, "render OUT/far.ply OUT/map.ply -o OUT/both.png").exits(0).stderr;
     assert!(said.contains("inside the reference") && said.contains("made up"), "{said}");
     // The same mesh without its comments has a picture without the legend.
-    let picture = |name: &str| {
-        let file = std::fs::File::open(folder.path().join(name)).expect("a picture");
-        let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a picture");
-        let mut bytes = vec![0; reader.output_buffer_size().expect("it fits")];
-        reader.next_frame(&mut bytes).expect("pixels");
-        bytes
-    };
     let bytes = std::fs::read(folder.path().join("map.ply")).expect("a map");
     let at = bytes.windows(11).position(|w| w == b"end_header\n").expect("a header");
     let header = String::from_utf8_lossy(&bytes[..at]).into_owned();
@@ -105,7 +98,7 @@ fn pictures_of_maps_have_a_legend() {
     std::fs::write(folder.path().join("plain.ply"), [plain.as_bytes(), &bytes[at..]].concat()).expect("written");
     let said = run_in(&folder, "render OUT/plain.ply -o OUT/plain.png --width 600 --height 400").exits(0).stderr;
     assert!(!said.contains("kept: "), "{said}");
-    let (with, without) = (picture("map.png"), picture("plain.png"));
-    let blue = |image: &[u8]| image.chunks(4).filter(|pixel| pixel[..3] == [0, 114, 178]).count();
+    let [with, without] = ["map.png", "plain.png"].map(|name| picture(&folder, name).3);
+    let blue = |image: &[[u8; 4]]| image.iter().filter(|pixel| pixel[..3] == [0, 114, 178]).count();
     assert!(blue(&with) >= 49 && blue(&without) == 0, "{} {}", blue(&with), blue(&without));
 }

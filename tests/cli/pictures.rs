@@ -1,18 +1,8 @@
 //! What `render` draws of meshes, and how: views, cuts, clear surfaces, turns, kinds of files.
 
-use super::{TempDir, folder, run_in};
+use super::{folder, picture, run_in};
 
 const SIZE: &str = "--width 320 --height 240";
-
-/// Width, height, frames and the pixels of the first one.
-fn picture(folder: &TempDir, name: &str) -> (u32, u32, u32, Vec<[u8; 4]>) {
-    let file = std::fs::File::open(folder.path().join(name)).expect("a picture");
-    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a picture");
-    let mut bytes = vec![0; reader.output_buffer_size().expect("it fits")];
-    let info = reader.next_frame(&mut bytes).expect("pixels");
-    let frames = reader.info().animation_control().map_or(1, |control| control.num_frames);
-    (info.width, info.height, frames, bytes.as_chunks::<4>().0.to_vec())
-}
 
 #[test]
 fn sheets_have_a_picture_for_each_view_of_each_mesh() {

@@ -11,12 +11,8 @@ fn grid(folder: &TempDir, name: &str) -> GridFile {
 
 /// Width, height and pixels of a picture.
 fn picture(folder: &TempDir, name: &str) -> (usize, usize, Vec<[u8; 4]>) {
-    let file = std::fs::File::open(folder.path().join(name)).expect("a picture");
-    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().expect("a PNG");
-    let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
-    let info = reader.next_frame(&mut bytes).expect("pixels");
-    let pixels = bytes.chunks_exact(4).map(|four| [four[0], four[1], four[2], four[3]]).collect();
-    (info.width as usize, info.height as usize, pixels)
+    let (width, height, _, pixels) = super::picture(folder, name);
+    (width as usize, height as usize, pixels)
 }
 
 #[test]

@@ -18,7 +18,7 @@ pub use viewed::html_of_files;
 use super::exit::Failure;
 use super::report::RunReport;
 use super::session::Session;
-use super::words::UnitName;
+use super::words::{UnitName, file_name};
 use crate::page::{Page, Part, Section};
 
 /// The report as a page.
@@ -75,9 +75,4 @@ fn page(report: &RunReport, json: serde_json::Value, scene: Scene, command: Opti
         made_by: format!("{} {}", report.tool, report.version),
         served: false,
     }
-}
-
-/// The name of a file without its folders.
-fn file_name(path: &str) -> &str {
-    std::path::Path::new(path).file_name().and_then(|name| name.to_str()).unwrap_or(path)
 }

@@ -1,7 +1,7 @@
 //! What `render` draws: surfaces, or slices.
 
 use super::RenderArgs;
-use super::surfaces::{Surfaces, surfaces, turned};
+use super::surfaces::{Surfaces, surfaces};
 use crate::cli::entries::SliceEntry;
 use crate::cli::exit::Failure;
 use crate::cli::given::{Given, Which};
@@ -46,11 +46,10 @@ impl Inputs<'_> {
     /// The images in the order of the inputs, and what is to be said of them.
     pub(super) fn draw(&self, session: &Session) -> Result<Drawn, Failure> {
         let meshes: Vec<&Input> = self.given.meshes.iter().collect();
-        match (self.slices(), self.args.turntable, meshes.as_slice()) {
-            (true, Some(_), _) => Err(Failure::usage("a turn is drawn of meshes, and this is a grid")),
-            (true, None, _) => self.sliced(session),
-            (false, Some(frames), &[mesh]) => turned(mesh, usize::from(frames), self.args, session).map(Drawn::from),
-            _ => surfaces(&meshes, self.args, session).map(Drawn::from),
+        match (self.slices(), self.args.turntable) {
+            (true, Some(_)) => Err(Failure::usage("a turn is drawn of meshes, and this is a grid")),
+            (true, None) => self.sliced(session),
+            (false, _) => surfaces(&meshes, self.args, session).map(Drawn::from),
         }
     }
 

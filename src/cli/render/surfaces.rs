@@ -31,7 +31,7 @@ pub(super) struct Surfaces {
 /// The smallest part of the mesh's diagonal that fills a picture.
 const LEAST_FOCUS: f64 = 0.02;
 
-/// One mesh, or two by one camera, from one side or several.
+/// One mesh, or two by one camera, from one side or several; or one while it turns.
 pub(super) fn surfaces(meshes: &[&Input], args: &RenderArgs, session: &Session) -> Result<Surfaces, Failure> {
     let set = Set::new(meshes, args, session)?;
     let colours: Vec<_> = meshes.iter().map(|input| shown(input)).collect();
@@ -41,24 +41,19 @@ pub(super) fn surfaces(meshes: &[&Input], args: &RenderArgs, session: &Session) 
         false => args.views.iter().map(|view| turned_up(view, args)).collect(),
     };
     let captions = set.captions(&subjects);
-    let images = render_views(&subjects, &views, &set.options, &captions, &session.progress).map_err(failure)?;
+    let images = match (args.turntable, subjects.as_slice()) {
+        (Some(frames), [subject]) => {
+            turntable(subject, usize::from(frames), &set.options, captions.first(), &session.progress)
+        }
+        _ => render_views(&subjects, &views, &set.options, &captions, &session.progress),
+    };
+    let images = images.map_err(failure)?;
     let columns = match (meshes.len(), views.len()) {
         (1, views) => (views as f64).sqrt().ceil() as usize,
         (meshes, 1) => meshes,
         (_, views) => views,
     };
     Ok(Surfaces { legend: set.legend(&subjects), images, columns, notes: set.notes })
-}
-
-/// One mesh while it turns.
-pub(super) fn turned(mesh: &Input, frames: usize, args: &RenderArgs, session: &Session) -> Result<Surfaces, Failure> {
-    let meshes = [mesh];
-    let set = Set::new(&meshes, args, session)?;
-    let colours = [shown(mesh)];
-    let subjects = set.subjects(&colours, session)?;
-    let captions = set.captions(&subjects);
-    let images = turntable(&subjects[0], frames, &set.options, captions.first(), &session.progress).map_err(failure)?;
-    Ok(Surfaces { legend: set.legend(&subjects), images, columns: 1, notes: set.notes })
 }
 
 /// Meshes that are drawn by one camera.
@@ -135,8 +130,7 @@ impl<'a> Set<'a> {
     }
 
     fn title(&self, n: usize, view: Option<&ViewChoice>) -> String {
-        let label = &self.meshes[n].label;
-        let name = Path::new(label).file_name().map_or(label.clone(), |name| name.to_string_lossy().into_owned());
+        let name = words::file_name(&self.meshes[n].label);
         let when = match (self.meshes.len(), n) {
             (1, _) => "",
             (_, 0) => "Before: ",

@@ -49,9 +49,7 @@ impl Layout {
         }
         let pen = self.pen;
         let [left, top, across, down] = [self.corner[0], self.corner[1], self.plot[0], self.plot[1]].map(|k| k as f32);
-        let title = Pen { size: 1.15 * pen.size, ..pen };
-        let text = title.shortened(&caption.title, self.size[0] as f32 - 1.4 * pen.size);
-        title.draw(image, &text, [0.7 * pen.size, 0.55 * top], Anchor::Left);
+        pen.draw_title(image, &caption.title, top);
         self.draw_axes(image, plane, &caption.unit);
         let unit = &caption.unit;
         let bar = Bar {
